@@ -1,4 +1,4 @@
-"""Where a whole `identify(search="ga")` spends its time: each step timed alone, behind other work."""
+"""Time of each step of a whole `identify(search="ga")`, each timed alone after other work."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BEHIND = 0.1  # [s] of NumPy before each repeat: caches are cold, the other proc
 
 
 def once(contest: Contest, windows: int | None) -> dict[str, float]:
-    """Seconds of each step of `identify(search="ga")`."""
+    """Return the seconds of each step of `identify(search="ga")`."""
     options = _core.GaOptions()
     search = Search("ga", ga=options)
     marks = [time.perf_counter()]
@@ -43,7 +43,7 @@ def once(contest: Contest, windows: int | None) -> dict[str, float]:
 
 
 def measure(contest: Contest) -> list[Record]:
-    """Medians of the steps, and of the call they make up."""
+    """Return medians of the steps, and of the call that consists of them."""
     rng = np.random.default_rng(4)
     rows = rng.uniform(contest.lower, contest.upper, (200, contest.lower.size))
 

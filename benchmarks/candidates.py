@@ -1,4 +1,4 @@
-"""Time per candidate of each form of the penalty, alone and by the population; medians, interleaved."""
+"""Time per candidate of each form of the penalty, alone and in a population; medians, interleaved."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from jointid import _core
 
 POPULATION = 200
 REPEATS = 11
-LEAST = 0.02  # [s] a measurement
+LEAST = 0.02  # [s] per measurement
 COMPRESSED = f"compressed, {POPULATION} per call, one thread"
 THESIS = "`thesis()` search 200 × 1500, one thread, all of it"
 THESIS_CODE = "`thesis_code()` search 200 × 1500, one thread, all of it"
 
 
 def measure(contest: Contest) -> list[Record]:
-    """Seconds a candidate: rows of name and median."""
+    """Return seconds per candidate: rows of name and median."""
     rng = np.random.default_rng(1)
     rows = rng.uniform(contest.lower, contest.upper, (POPULATION, contest.lower.size))
     full = np.asfortranarray(np.array([contest.full(row) for row in rows]).T)

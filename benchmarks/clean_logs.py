@@ -1,4 +1,4 @@
-"""Logs without a fault, for `faulty_logs.py --clean`: false warnings, coverage, and second looks that disagree."""
+"""Logs without a fault, for `faulty_logs.py --clean`: false warnings, coverage, and cross-checks that disagree."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ CLEAN_RATES = (10, 4, 1)
 
 @dataclass(frozen=True, kw_only=True)
 class Clean:
-    """A plan of a log without a fault, by what it is counted under."""
+    """A plan of a log without a fault, by its category in the table."""
 
     model: str
     sensor: bool
@@ -22,12 +22,12 @@ class Clean:
 
     @property
     def name(self) -> str:
-        """The row of the table."""
+        """Name of the row in the table."""
         return f"{self.model}, {'sensor, ' if self.sensor else ''}{1000 // self.every} Hz"
 
 
 def clean(draw: Draw, number: int) -> Clean:
-    """One of the 24 kinds of clean logs: four models, with and without a sensor, three rates."""
+    """Return one of the 24 kinds of clean logs: four models, with and without a sensor, three rates."""
     model, sensor = MODELS[number % 4], bool(number // 4 % 2)
     every = CLEAN_RATES[number // 8 % 3]
     motions = [draw.motion(draw.scale(0.5, 1.5))]
@@ -44,7 +44,7 @@ def clean(draw: Draw, number: int) -> Clean:
     if model == "asymmetric":
         lean = draw.between(0.05, 0.3) * draw.one((-1.0, 1.0))
         plant["asymmetry"], plant["viscous_asymmetry"] = lean, draw.between(-0.3, 0.3)
-        plant["constant"] = 0.0  # nothing tells it from the lean
+        plant["constant"] = 0.0  # nothing separates it from the tilt
     if sensor:
         plant["link_inertia"] = plant["inertia"] * draw.between(0.1, 0.5)
         plant["constant"] = 0.0

@@ -20,19 +20,19 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 from plants import Bench, Law, Log, Motion, Plant, chirp, sines, thesis, trapezoids
 
 DURATION = 12.0
-TURN = 101.0  # of the motor, an output turn
+TURN = 101.0  # motor revolutions per output revolution
 Value = float | tuple[float, float]  # a pair: drawn evenly between the two for each joint
 
 
 @dataclass(frozen=True, kw_only=True)
 class Condition:
-    """Recordings that differ in the joint, and how `identify` is called with them.
+    """Recordings that differ in the joint, and the arguments of `identify`.
 
     Attributes
     ----------
     name : str
     clean : bool
-        Whether the model holds and the signals are as they should be.
+        Whether the model holds and the signals have no defect.
     sensor : bool
         A torque sensor between drive and link; the drive's inertia is then given. Without one, inertia and
         gravity are identified.
@@ -42,7 +42,7 @@ class Condition:
     duration : float
         [s].
     model : str or None
-        Of the given joint; None: no joint is given, `identify(recording)` chooses.
+        Model of the joint in the call; None: without a joint, `identify(recording)` chooses.
     plant, law, log : mapping
         Fields of `Plant`, `Law` and `Log` that differ from the random joint's.
     """
@@ -60,13 +60,13 @@ class Condition:
 
     @property
     def called_with(self) -> str | None:
-        """The model of the call's joint."""
+        """Return the model of the call's joint."""
         if self.model is None or self.model:
             return self.model
         return "stribeck" if self.sensor else "stribeck:gravity=free"
 
     def joint(self, recording: jid.Recording) -> jid.Joint | None:
-        """What is known before the identification."""
+        """Return the facts that are known before the identification."""
         if self.called_with is None:
             return None
         inertia = recording.metadata["plant"]["inertia"] if self.sensor else None
@@ -79,7 +79,7 @@ class Condition:
         )
 
     def bench(self, runs: int, rng: np.random.Generator) -> Bench:
-        """Random joints under this condition."""
+        """Return random joints under this condition."""
 
         def draw(value: Value) -> NDArray[np.float64]:
             low, high = value if isinstance(value, tuple) else (value, value)
@@ -155,7 +155,7 @@ NO_STRIBECK: Mapping[str, Value] = {"static": 0.0}
 
 
 def encoder(counts: float) -> dict[str, Any]:
-    """Only positions are recorded, in counts an output turn; control is by their backward difference."""
+    """Record only positions, in counts per output revolution; control uses their backward difference."""
     return {"law": MEASURED, "log": {"counts": counts, "velocity": 0.0, "differenced": 1.0}}
 
 

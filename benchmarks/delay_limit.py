@@ -1,4 +1,4 @@
-"""How well a recording can tell the delay of its sensor's reading at all: the Cramér-Rao bound."""
+"""The Cramér-Rao bound: how accurately a recording can determine the delay of its sensor's reading."""
 
 from __future__ import annotations
 
@@ -11,8 +11,10 @@ import jointid as jid
 
 Array = NDArray[np.float64]
 
-NORMAL = 1.96  # standard errors of half a 95 % interval
-_REFUTED = 3.0  # standard errors: then the other reading is 20 times less likely, with its whole sample to choose from
+NORMAL = 1.96  # standard errors in half a 95 % interval
+_REFUTED = (
+    3.0  # standard errors: then the other reading is 20 times less likely, anywhere in its sample
+)
 _STEP = 1e-6  # [s]
 _JUMP = 6.0  # medians of the size of the reading's rate
 
@@ -24,11 +26,11 @@ class Limit:
     Attributes
     ----------
     smooth : float
-        From the motion without its jumps.
+        Error from the motion without its jumps.
     whole : float
-        From all of it, for one who knows whether the reading is interpolated between samples.
+        Error from the whole motion, if it is known whether the reading is interpolated between samples.
     apart : float
-        From the delay to the next whole sample.
+        Distance from the delay to the next whole sample.
     """
 
     smooth: float
@@ -37,11 +39,11 @@ class Limit:
 
     @property
     def error(self) -> float:
-        """The least standard error: jumps count where they tell an interpolated reading from one of an instant."""
+        """Return the least standard error: jumps count where they separate an interpolated reading from an instant."""
         return self.whole if _REFUTED * self.whole <= self.apart else self.smooth
 
     def determinable(self, near: float) -> bool:
-        """Whether any unbiased estimate has a 95 % interval within that [s], and knows which delay it is."""
+        """Return whether an unbiased estimate can have a 95 % interval within that [s], and know which delay it is."""
         return NORMAL * self.error <= near or NORMAL * self.smooth <= near
 
 
@@ -51,18 +53,18 @@ def limit(quiet: jid.Recording, noise: float, delay: float) -> Limit:
     Parameters
     ----------
     quiet : Recording
-        What the sensor reads without noise, and not late; no controller feeds it back.
+        The sensor's reading without noise and without delay; no controller feeds it back.
     noise : float
         Standard deviation of a reading [N·m].
     delay : float
-        [s]; samples between are interpolated.
+        Delay [s]; the signal is interpolated between samples.
 
     Notes
     -----
-    The bound is the noise over the root of the summed squares of the reading's rate, less what a changed inertia,
-    gravity or offset of the link would do: the motion is taken as exact, so the truth is not below it. Jumps tell
-    most, but a jump that falls on a whole sample says only between which samples the delay is, if the recording does
-    not say whether its reading is interpolated: then the smooth part has to tell.
+    The bound is the noise over the root of the summed squares of the reading's rate, without the part that a changed
+    inertia, gravity or offset of the link explains. The motion counts as exact, so the true error is not below the
+    bound. Jumps give most information. But if a jump falls on a whole sample, and it is unknown whether the reading is
+    interpolated, the jump only shows between which samples the delay is. Then the smooth part decides.
     """
     rate = (late(quiet, "sensor", delay + _STEP) - late(quiet, "sensor", delay - _STEP)) / (
         2.0 * _STEP
@@ -82,5 +84,5 @@ def limit(quiet: jid.Recording, noise: float, delay: float) -> Limit:
 
 
 def late(recording: jid.Recording, signal: str, delay: float) -> Array:
-    """A signal that is late; between samples it is interpolated."""
+    """Return a delayed signal, interpolated between samples."""
     return np.asarray(np.interp(recording.time - delay, recording.time, getattr(recording, signal)))

@@ -1,4 +1,4 @@
-"""The ring through an emulated bus, over many seeds: tracking errors, and errors of the estimate."""
+"""The ring on an emulated bus, over many seeds: tracking errors, and errors of the estimate."""
 
 import argparse
 import os
@@ -72,7 +72,7 @@ KINDS: dict[str, Callable[[Bench], Bench]] = {
 
 
 def closed(kind: str, seed: int) -> list[list[float]]:
-    """Errors before, after, with the truth; relative errors [%] of the last estimate, with ripple and without."""
+    """Return errors before, after, with the truth; errors [%] of the last estimate, with and without ripple."""
     ring = commission(KINDS[kind](Bench.load(FILE)), cycles=2, emulate=True, seed=seed, threads=1)
     assert ring.true_run is not None
     assert ring.without_ripple is not None

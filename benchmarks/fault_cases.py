@@ -1,6 +1,6 @@
-"""What can go wrong in a session, one by one on an emulated bus, and what must come of it.
+"""Faults of a session, one by one on an emulated bus, and the required reaction to each.
 
-The table is shared by `fault_matrix.py`, which prints what happens, and by the tests, which hold it to this.
+`fault_matrix.py` prints the reactions; the tests compare them with this table.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from jointid.hardware.session.session import Session, SessionOptions, SessionSto
 from jointid.simulation.stepped import stepped_joint
 
 PERIOD = 2e-3  # [s]
-BEGIN = 1.47  # [s] on the bus's clock: the joint is in the middle of its motion then
+BEGIN = 1.47  # [s] on the bus's clock, in the middle of the joint's motion
 COMMAND, REPLY, POSITION, EMERGENCY, OURS, SENSOR = 0x37F, 0x2FF, 0x4FF, 0x0FF, 0x701, 0x1C0
 REQUEST, ANSWER = 0x67F, 0x5FF  # of objects
 TRUTH = {
@@ -44,14 +44,14 @@ OFF = bytes.fromhex("4D 4F 00 00 00 00 00 00")  # MO = 0
 
 
 def joint() -> jid.Joint:
-    """The thesis's joint, its link about the vertical, with its true parameters."""
+    """Return the thesis's joint with its link about the vertical, with its true parameters."""
     plain = jid.thesis_joint()
     assert plain.link is not None
     return plain.replace(link=replace(plain.link, angle=-math.pi / 2.0)).with_parameters(TRUTH)
 
 
 class WatchedBus(EmulatedBus):
-    """An emulated bus that keeps what the host tried to send, and when."""
+    """An emulated bus that keeps the host's frames and their times."""
 
     def __init__(self, *devices: Any, faults: tuple[BusFault, ...] = ()) -> None:
         self.tried: list[tuple[float, int, bytes]] = []
@@ -63,20 +63,20 @@ class WatchedBus(EmulatedBus):
         super().send(msg, timeout)
 
     def assignments(self) -> list[tuple[float, bytes]]:
-        """Commands that change something in the drive."""
+        """Return commands that change something in the drive."""
         return [
             (when, data) for when, sent, data in self.tried if sent == COMMAND and len(data) == 8
         ]
 
 
 class EmulatedSession:
-    """A session on an emulated bench that something can be done to.
+    """A session on an emulated bench to which faults can be applied.
 
     Parameters
     ----------
     faults : sequence of BusFault
     limits : mapping
-        Other limits than the joint's own.
+        Limits that replace the joint's own.
     drive : ElmoOptions
     output : path, optional
     """
@@ -102,7 +102,7 @@ class EmulatedSession:
         self.output = output
 
     def session(self) -> Session:
-        """The session, with what has been set until now."""
+        """Return the session with the current settings."""
         options = SessionOptions(period=PERIOD, settle=0.1)
         return Session(
             *(self.drive, self.law, self.trajectory, self.limits),
@@ -112,7 +112,7 @@ class EmulatedSession:
         )
 
     def at(self, when: float, event: Callable[[], object]) -> None:
-        """Do something at a time on the bus's clock [s]."""
+        """Call a function at a time on the bus's clock [s]."""
 
         def run() -> None:
             event()
@@ -125,27 +125,27 @@ Script = Callable[[EmulatedSession], object]
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """One thing that goes wrong.
+    """One fault.
 
     Attributes
     ----------
     name : str
     stop : str
-        The `Stop.limit` that must come of it.
+        The expected `Stop.limit`.
     says : str
-        What its message must hold.
+        Text that its message must contain.
     script : callable, optional
         Prepares the fault.
     faults : callable, optional
-        Gives the bus's faults.
+        Returns the bus's faults.
     limits : mapping
     drive : ElmoOptions, optional
     detected : float
-        At the latest, after the fault [s].
+        Latest detection after the fault [s].
     reachable : bool
-        The drive hears the host; otherwise its own watchdog has to switch it off.
+        Whether the drive receives the host's frames; otherwise its own watchdog must switch it off.
     heard : bool
-        And the host hears the drive: it can see that the motor is off.
+        Whether the host also receives the drive's frames, and so sees that the motor is off.
     """
 
     name: str
@@ -162,7 +162,7 @@ class Case:
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What came of a case."""
+    """Outcome of a case."""
 
     stop: Stop
     recording: jid.Recording
@@ -170,19 +170,19 @@ class Outcome:
 
     @property
     def detected(self) -> float:
-        """From the fault until the session's stop [s]."""
+        """Time from the fault to the session's stop [s]."""
         return self.stop.moment - BEGIN
 
     @property
     def commanded_off(self) -> float:
-        """From the stop until TC = 0 and MO = 0 were sent [s]."""
+        """Time from the stop until TC = 0 and MO = 0 were sent [s]."""
         sent = self.bench.bus.assignments()
         last = [when for when, data in sent if data == OFF and when >= self.stop.moment]
         return last[0] - self.stop.moment if last else math.inf
 
     @property
     def motor_off(self) -> float:
-        """From the stop until the motor was off [s]; negative: the drive was faster."""
+        """Time from the stop until the motor was off [s]; negative if the drive was faster."""
         when, on = self.bench.elmo.switchings[-1]
         return math.inf if on else when - self.stop.moment
 
@@ -209,11 +209,11 @@ def outcome(case: Case, output: Path | None = None) -> Outcome:
     return Outcome(stop=stopped.stop, recording=stopped.recording, bench=bench)
 
 
-# What is done, at BEGIN.
+# Actions at BEGIN.
 
 
 def _set(what: str, value: Any) -> Script:
-    """An attribute of the emulated drive takes a value."""
+    """Set an attribute of the emulated drive."""
     return lambda bench: bench.at(BEGIN, lambda: setattr(bench.elmo, what, value))
 
 
@@ -222,7 +222,7 @@ def _fails(kind: str) -> Script:
 
 
 def _slips(angle: float) -> Script:
-    """The encoder's zero moves by an output angle [rad]."""
+    """Move the encoder's zero by an output angle [rad]."""
     return _set("slipped_counts", round(angle / (2.0 * math.pi) * 808_000))
 
 
@@ -236,7 +236,7 @@ def _sensor_rails(bench: EmulatedSession) -> None:
 
 
 def _host_works(duration: float, times: int | None = None) -> Script:
-    """Each frame costs the host so much [s], for so many frames."""
+    """Delay the host by this time at each frame [s], for this number of frames."""
 
     def script(bench: EmulatedSession) -> None:
         bench.at(BEGIN, lambda: setattr(bench.bus, "host_work", duration))
@@ -250,7 +250,7 @@ def _host_works(duration: float, times: int | None = None) -> Script:
 
 
 def _same_stamp(bench: EmulatedSession) -> None:
-    """The drive shows a sample of the past again."""
+    """Let the drive show an old sample again."""
     read, last = bench.drive.read, list[DriveSample]()
 
     def stale(timeout: float) -> DriveSample:
@@ -262,19 +262,19 @@ def _same_stamp(bench: EmulatedSession) -> None:
 
 
 class Tampered:
-    """A controller of the user's own: as another one, until something happens in it."""
+    """A user's controller: equal to another one, until something happens in it."""
 
     def __init__(self, law: Any, bench: EmulatedSession, act: Callable[[float], float]) -> None:
         self._law, self._bench, self._act = law, bench, act
         self.saturations = 0
 
     def start(self, **given: Any) -> Tampered:
-        """Begin to control."""
+        """Start the controller."""
         self._law = self._law.start(**given)
         return self
 
     def step(self, **measured: float) -> float:
-        """The torque [N·m]."""
+        """Return the torque [N·m]."""
         torque = float(self._law.step(**measured))
         return torque if self._bench.bus.now() < BEGIN else self._act(torque)
 
@@ -308,7 +308,7 @@ def _bus(kind: str, *identifiers: int | None, **more: float) -> Callable[[], tup
 def foreign(
     identifier: int, payload: bytes, *, begin: float = BEGIN, every: float = 20e-3
 ) -> Script:
-    """Another master on the bus sends a frame, again and again [s]; the drive takes it for the host's."""
+    """Let another master send a frame repeatedly [s]; the drive takes it for the host's."""
 
     def script(bench: EmulatedSession) -> None:
         def send(when: float) -> None:
@@ -322,7 +322,7 @@ def foreign(
 
 
 def _deaf_to_the_sensor(bench: EmulatedSession) -> None:
-    """The drive does not answer AN any more."""
+    """Stop the drive's answers to AN."""
     reply = bench.elmo.reply
 
     def some(payload: bytes) -> None:
@@ -333,7 +333,7 @@ def _deaf_to_the_sensor(bench: EmulatedSession) -> None:
 
 
 def _answers_wrongly(bench: EmulatedSession) -> None:
-    """The drive takes 1 A more than it was told."""
+    """Let the drive use 1 A more than the command."""
     reply = bench.elmo.reply
 
     def changed(payload: bytes) -> None:

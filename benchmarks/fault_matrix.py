@@ -1,4 +1,4 @@
-"""What stops a session, how soon, and how soon the motor is off then: each fault on an emulated bus, as a table."""
+"""Print a table of faults on an emulated bus: what stops the session, how soon, and when the motor is off."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ _HEAD = ("fault", "stop", "detected after [ms]", "motor off after [ms]", "seen o
 
 
 def row(name: str, found: Outcome) -> str:
-    """One line of the table, in Markdown."""
+    """Return one line of the table, in Markdown."""
     stop = found.stop
     cells = (
         name,

@@ -10,7 +10,7 @@ from log_plans import SI, Log, Plan, log_of, one_run
 
 
 def behind_friction(draw: Draw) -> Plan:
-    """The torque of a sensor behind the friction; its header says so, or does not."""
+    """Put the torque sensor behind the friction; the header says so, or not."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         header = draw.variant(("tau_J", "joint_torque_Nm", "torque_sensor_Nm", "torque_Nm"))
@@ -23,7 +23,7 @@ def behind_friction(draw: Draw) -> Plan:
 
 
 def reversed_torque(draw: Draw) -> Plan:
-    """The torque has the opposite sign."""
+    """Reverse the sign of the torque."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         table["torque"] *= -1.0
@@ -33,7 +33,7 @@ def reversed_torque(draw: Draw) -> Plan:
 
 
 def geared_torque(draw: Draw) -> Plan:
-    """The motor's torque, with the gear ratio known: its header says so, or the known inertia contradicts it."""
+    """Record the motor's torque with a known gear ratio: the header says so, or the known inertia contradicts it."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         ratio, said = draw.scale(5.0, 150.0), draw.variant((True, False))
@@ -55,7 +55,7 @@ def geared_torque(draw: Draw) -> Plan:
 
 
 def current(draw: Draw) -> Plan:
-    """A current in amperes, as its header says, with and without the torque constant."""
+    """Record a current in amperes, as its header says, with and without the torque constant."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         constant, known = draw.scale(0.02, 0.5), draw.variant((True, False))
@@ -78,7 +78,7 @@ def current(draw: Draw) -> Plan:
 
 
 def saturated(draw: Draw) -> Plan:
-    """The torque rests on a limit: the drive's, or that of the recorder alone."""
+    """Clip the torque at a limit: the drive's, or only the recorder's."""
     applied = draw.variant((True, False))
     every = draw.one(RATES)
     share = draw.between(0.3, 0.7) if applied else draw.between(0.6, 0.85)
@@ -98,7 +98,7 @@ def saturated(draw: Draw) -> Plan:
 
 
 def motor_velocity(draw: Draw) -> Plan:
-    """The motor's velocity next to the joint's position, with the gear ratio known."""
+    """Record the motor's velocity next to the joint's position, with the gear ratio known."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         ratio = draw.scale(4.0, 160.0) * (-1.0 if draw.chance(0.15) else 1.0)
@@ -113,7 +113,7 @@ def motor_velocity(draw: Draw) -> Plan:
 
 
 def product_names(draw: Draw) -> Plan:
-    """Names of a product with documented units that are not SI, and no unit in the header."""
+    """Use names of a product with documented units that are not SI, without a unit in the header."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         product = draw.variant(("ODrive", "CiA 402", "Feetech", "ODrive", "Dynamixel"))
@@ -156,7 +156,7 @@ def product_names(draw: Draw) -> Plan:
 
 
 def no_units(draw: Draw) -> Plan:
-    """Degrees and rpm under headers that name no unit."""
+    """Use degrees and rpm under headers without a unit."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         position, velocity = draw.variant(
@@ -177,7 +177,7 @@ def no_units(draw: Draw) -> Plan:
 
 
 def bare_numbers(draw: Draw) -> Plan:
-    """No header: time, position, velocity and torque, or three joints of which the first moves."""
+    """Leave out the header: time, position, velocity and torque, or three joints of which the first moves."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         size = table["time"].size
@@ -204,7 +204,7 @@ def bare_numbers(draw: Draw) -> Plan:
 
 
 def recorder_pairs(draw: Draw) -> Plan:
-    """A recorder's export: an X,Y pair of columns for each channel, X in ms."""
+    """Write a recorder's export: an X,Y pair of columns for each channel, X in ms."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         pairs = ("position", "velocity", "torque")
@@ -223,7 +223,7 @@ def recorder_pairs(draw: Draw) -> Plan:
 
 
 def one_of_several(draw: Draw) -> Plan:
-    """Several runs of one joint, of which one has a fault."""
+    """Write several runs of one joint, one with a fault."""
     every, count = draw.one(RATES), draw.whole(3, 6)
     motions = [draw.motion(draw.between(0.4, 1.2)) for _ in range(count)]
     drawn = draw.joint(motions, every)

@@ -11,7 +11,7 @@ from plants import Motion, sines, trapezoids
 
 
 def held_rows(draw: Draw) -> Plan:
-    """Rows faster than the bus: 2 to 10 rows a sample of 5 to 20 ms."""
+    """Write rows faster than the bus: 2 to 10 rows per sample of 5 to 20 ms."""
     row = draw.one((1, 2, 4, 5))
     rows = draw.whole(max(2, -(-5 // row)), min(10, 20 // row))
     fresh, velocity, several = (bool(draw.turn & bit) for bit in (1, 2, 4))
@@ -40,7 +40,7 @@ def held_rows(draw: Draw) -> Plan:
 
 
 def repeated_stamps(draw: Draw) -> Plan:
-    """Rows written twice, equal in all columns."""
+    """Write rows twice, equal in all columns."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         size = table["time"].size
@@ -55,7 +55,7 @@ def repeated_stamps(draw: Draw) -> Plan:
 
 
 def rounded_stamps(draw: Draw) -> Plan:
-    """Stamps rounded to 2 to 5 rows, or to another step that the period is no multiple of."""
+    """Round stamps to 2 to 5 rows, or to another step that does not divide the period."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         period = 1e-3 * drawn.every
@@ -70,7 +70,7 @@ def rounded_stamps(draw: Draw) -> Plan:
 
 
 def torn_tail(draw: Draw) -> Plan:
-    """The end of a buffer: the last row again and again, or zeros in all columns."""
+    """Write the end of a buffer: the last row again and again, or zeros in all columns."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         count, zeros = draw.whole(20, 400), draw.variant((True, False))
@@ -84,7 +84,7 @@ def torn_tail(draw: Draw) -> Plan:
 
 
 def cut_line(draw: Draw) -> Plan:
-    """The last line is cut anywhere."""
+    """Cut the last line anywhere."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         log = log_of(draw, [table], drawn, causes=r"last line|truncated|incomplete")
@@ -97,7 +97,7 @@ def cut_line(draw: Draw) -> Plan:
 
 
 def no_time(draw: Draw) -> Plan:
-    """No column of time; half of the users give the rate."""
+    """Leave out the column of time; half of the users give the rate."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         given = draw.variant((True, False))
@@ -112,7 +112,7 @@ def no_time(draw: Draw) -> Plan:
 
 
 def wrapped(draw: Draw) -> Plan:
-    """An angle modulo a turn, in all runs or in some."""
+    """Wrap an angle modulo a revolution, in all runs or in some."""
     every, count = draw.one(RATES), draw.variant((1, 1, 3, 5))
     velocity, half = draw.chance(0.5), draw.chance(0.5)
     edge = np.pi if half else 0.0
@@ -140,7 +140,7 @@ def wrapped(draw: Draw) -> Plan:
 
 
 def many_turns(draw: Draw) -> Plan:
-    """More than four turns there and back, in stated units."""
+    """Move more than four revolutions in both directions, in stated units."""
     every = draw.one(RATES)
     drawn = draw.joint([draw.motion(draw.scale(26.0, 150.0))], every, gravity=False)
 
@@ -153,7 +153,7 @@ def many_turns(draw: Draw) -> Plan:
 
 
 def late_signal(draw: Draw) -> Plan:
-    """Torque, velocity or position late by 2 to 10 ms."""
+    """Delay torque, velocity or position by 2 to 10 ms."""
     every = draw.one((1, 2, 4, 5))
     drawn = draw.joint([draw.motion(draw.scale(0.5, 1.5))], every)
 
@@ -174,7 +174,7 @@ def late_signal(draw: Draw) -> Plan:
 
 
 def short_run(draw: Draw) -> Plan:
-    """80 to 160 rows: the largest torque stands there once, which is no limit."""
+    """Write 80 to 160 rows: the largest torque occurs once, which is no limit."""
     every, amplitude = draw.one((10, 20)), draw.scale(0.5, 1.0)
     rates = TURN / (0.09 * every) * np.array([[1.0, 2.3]]) * draw.rng.uniform(0.8, 1.1, (1, 2))
     motion = sines([[amplitude, 0.3 * amplitude]], rates, draw.rng.uniform(0.0, TURN, (1, 2)))
@@ -192,7 +192,7 @@ def short_run(draw: Draw) -> Plan:
 
 
 def _onward(draw: Draw) -> Motion:
-    """In one direction only, at a speed that varies."""
+    """Move in one direction only, at a varying speed."""
     speed, rates = draw.scale(0.5, 3.0), np.array([draw.between(1.0, 2.0), draw.between(3.0, 5.0)])
     sizes = speed * np.array([draw.between(0.2, 0.5), draw.between(0.1, 0.3)])
     phases = draw.rng.uniform(0.0, TURN, 2)
@@ -207,7 +207,7 @@ def _onward(draw: Draw) -> Motion:
 
 
 def no_split(draw: Draw) -> Plan:
-    """One direction only, or one speed there and back: Coulomb friction and another value cannot be told apart."""
+    """Move in one direction, or at one speed in both: then Coulomb friction and another value are inseparable."""
     every, onward = draw.one(RATES), draw.variant((True, False))
     size = draw.scale(0.5, 3.0)
     motion = _onward(draw) if onward else trapezoids([size], [size * 0.8], [size * 6.0], 0.0)
@@ -229,7 +229,7 @@ _STANDS = r"stands still|standing|never moves?|does not move|hardly_moves"
 
 
 def standing(draw: Draw) -> Plan:
-    """The joint stands still: constant, or one step of the encoder to and fro."""
+    """Let the joint stand still: constant, or moving by one step of the encoder."""
 
     def change(draw: Draw, table: Table, drawn: Drawn) -> Log:
         time = table["time"]

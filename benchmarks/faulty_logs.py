@@ -69,10 +69,10 @@ KINDS = {
         *(motor_velocity, late_signal, standing, reversed_torque, geared_torque),
     )
 }
-OFF = 0.05  # a relative error above this one is wrong if the 95 % interval does not excuse it
-_TOGETHER = 50  # logs of one simulation
+OFF = 0.05  # a larger relative error is wrong, unless the 95 % interval contains the truth
+_TOGETHER = 50  # logs per simulation
 _NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
-_PASTES = 3  # so often advice is followed
+_PASTES = 3  # number of times that advice is followed
 _ADVICE = re.compile(r"--(?:column|unit|scale) '?[\w.]+=(?:'[^']*'|[^\s,;']*)'?")
 _GENERAL = "units, signs and gear ratio"  # advice of many findings, which names no cause
 Outcome = Literal["right", "cause first", "cause later", "other cause", "wrong and usable"]
@@ -91,12 +91,12 @@ PART = Part(
 
 @dataclass(frozen=True, kw_only=True)
 class Answer:
-    """What the command line said of a log.
+    """Output of the command line for a log.
 
     Attributes
     ----------
     document : dict
-        The estimate, empty where there is an error.
+        The estimate, empty after an error.
     error : str
     """
 
@@ -105,7 +105,7 @@ class Answer:
 
     @property
     def sentences(self) -> list[str]:
-        """The error, or the findings, the most severe first; without findings the verdict's reasons."""
+        """Return the error, or the findings, the most severe first; without findings the verdict's reasons."""
         if self.error:
             return [self.error]
         found = [f"{each['code']}: {each['message']}" for each in self.serious()]
@@ -113,16 +113,16 @@ class Answer:
 
     @property
     def first(self) -> str:
-        """What is said first."""
+        """Return the first sentence."""
         return next(iter(self.sentences), "")
 
     def serious(self) -> list[Mapping[str, Any]]:
-        """Findings of severity blocking, then warning."""
+        """Return findings of severity blocking, then warning."""
         found = [f for f in self.document.get("findings", ()) if f["severity"] != "info"]
         return sorted(found, key=lambda each: each["severity"] != "blocking")
 
     def usable(self, purpose: str = "") -> bool:
-        """Whether the verdict, or that for a purpose, is one of the two usable levels."""
+        """Return whether the verdict, or that for a purpose, is one of the two usable levels."""
         if self.error:
             return False
         verdict = self.document["verdict"]
@@ -130,13 +130,13 @@ class Answer:
         return bool(level != "not usable")
 
     def wrong(self, truth: Mapping[str, float]) -> dict[str, tuple[float, float]]:
-        """Value and truth of the parameters that are more than 5 % off and outside their intervals."""
+        """Return value and truth of the parameters that are more than 5 % wrong and outside their intervals."""
         found = {}
         parameters = self.document.get("parameters", {})
         hidden = truth.get("gravity_sin", 0.0) and "gravity_sin" not in parameters
         for name, p in parameters.items():
             if name not in truth or not p["vary"] or (hidden and name == "torque_offset"):
-                continue  # an offset holds the weight that a model lacks
+                continue  # an offset includes the weight that a model lacks
             value, true = float(p["value"]), truth[name]
             scale = (
                 max(abs(true), truth["coulomb"]) if name in _NEAR_ZERO or not true else abs(true)
@@ -159,7 +159,7 @@ class Judged:
 
     @property
     def text(self) -> str:
-        """One line of a list."""
+        """Return one line of a list."""
         values = self.answer.wrong(self.log.truth)
         said = ", ".join(f"{name} {v:.4g} (true {t:.4g})" for name, (v, t) in values.items())
         level = "" if self.answer.error else f" [{self.answer.document['verdict']['level']}]"
@@ -171,9 +171,9 @@ class Judged:
 
 
 def judged(number: int, kind: str, log: Log, answer: Answer) -> Judged:
-    """Hold an answer against the truth.
+    """Compare an answer with the truth.
 
-    A value counts where a use is usable: friction for compensation, all of them for simulation. Changes between
+    A value counts if a purpose is usable: friction for compensation, all values for simulation. Changes between
     recordings (monitoring) do not need a right value.
     """
     wrong = answer.wrong(log.truth)
@@ -197,7 +197,7 @@ def judged(number: int, kind: str, log: Log, answer: Answer) -> Judged:
 
 
 def drawn(seed: int, numbers: Iterable[int], kind: str = "") -> Iterator[tuple[int, str, Plan]]:
-    """The plans of these numbers, of kinds with this in their name; a log depends on its seed and number alone."""
+    """Return the plans of these numbers, of kinds with this name part; a log depends only on its seed and number."""
     for number in numbers:
         turn, place = divmod(number, len(KINDS))
         name = list(KINDS)[place]
@@ -209,7 +209,7 @@ def drawn(seed: int, numbers: Iterable[int], kind: str = "") -> Iterator[tuple[i
 def written(
     plans: Iterable[tuple[int, str, Plan]], duration: float = DURATION
 ) -> Iterator[tuple[int, str, Log]]:
-    """The logs of plans, simulated many at a time."""
+    """Return the logs of plans, simulated many at a time."""
     waiting = list(plans)
     for begin in range(0, len(waiting), _TOGETHER):
         part = waiting[begin : begin + _TOGETHER]
@@ -219,7 +219,7 @@ def written(
 
 
 def answered(log: Log, folder: Path) -> Answer:
-    """What `jointid identify` says to a log's files, and to its pasted advice where the kind is about that."""
+    """Run `jointid identify` on a log's files, and on its pasted advice if the kind is about that."""
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in log.files.items():
         data = text.encode()
@@ -249,7 +249,7 @@ def _identified(words: Sequence[str]) -> Answer:
 
 
 def faulty(given: argparse.Namespace, folder: Path) -> None:
-    """Publish the outcomes by kind, and those that are wrong and usable."""
+    """Publish the outcomes by kind, and the logs that are wrong but called usable."""
     numbers = [given.number] if given.number >= 0 else range(given.logs)
     counts: dict[str, collections.Counter[str]] = {}
     misled = []
@@ -279,7 +279,7 @@ def faulty(given: argparse.Namespace, folder: Path) -> None:
 
 @dataclass(frozen=True, kw_only=True)
 class CleanRun:
-    """What is counted of a log without a fault."""
+    """Counts for a log without a fault."""
 
     name: str
     answer: Answer
@@ -290,7 +290,7 @@ class CleanRun:
 
 
 def clean_run(name: str, log: Log, answer: Answer) -> CleanRun:
-    """Hold the answer to a clean log against the truth; the interval of `sensor_offset` does not count."""
+    """Compare the answer to a clean log with the truth; the interval of `sensor_offset` does not count."""
     if answer.error:
         return CleanRun(
             name=name,
@@ -318,7 +318,7 @@ def clean_run(name: str, log: Log, answer: Answer) -> CleanRun:
 
 
 def cleanly(given: argparse.Namespace, folder: Path) -> None:
-    """Print the table of logs without a fault, and those with something to explain."""
+    """Print the table of logs without a fault, and the logs that need an explanation."""
     rngs = (np.random.default_rng([given.seed, number]) for number in range(given.clean))
     plans = [clean(Draw(rng), number) for number, rng in enumerate(rngs)]
     runs = []
@@ -350,8 +350,10 @@ def main() -> None:
     parser.add_argument("--logs", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--number", type=int, default=-1, help="only this log")
-    parser.add_argument("--kind", default="", help="kinds whose name contains this")
-    parser.add_argument("--clean", type=int, default=0, help="so many logs without a fault instead")
+    parser.add_argument("--kind", default="", help="only kinds with this in their name")
+    parser.add_argument(
+        "--clean", type=int, default=0, help="instead, run this number of logs without a fault"
+    )
     parser.add_argument("--keep", type=Path, help="a folder for the files and their commands")
     parser.add_argument("--list", action="store_true", help="print each log as it is judged")
     parser.add_argument("--write", action="store_true", help="write it into the page, too")

@@ -1,7 +1,7 @@
 """The steps from `pip install` to an estimate of one's own log, each timed. Ratios of CPU time; Markdown.
 
-Nobody says which column of the log is what, or how to read it. What a step prints is pasted into the next one, as a
-newcomer does. Each step is a program of its own; the shortest of `--runs` counts.
+The user states neither the meaning of the log's columns nor how to read it. The output of a step is pasted into the
+next one, as a newcomer does. Each step is a program of its own; the shortest of `--runs` counts.
 
     python benchmarks/first_steps.py
     python benchmarks/first_steps.py --wheel dist/jointid-*.whl
@@ -18,11 +18,11 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 LOG = REPOSITORY / "tests" / "cli" / "foreign_logs" / "kr300_125_hz.csv.gz"
-RATIO = "256.86"  # from the robot's data sheet: what the newcomer knows
+RATIO = "256.86"  # from the robot's data sheet: known to the newcomer
 
 
 def run(command: list[str], folder: Path, code: int = 0) -> tuple[float, str]:
-    """CPU time of a program with its threads and what it starts, and what it printed."""
+    """Return the CPU time of a program with its threads and child processes, and its output."""
     before = os.times()
     environment = os.environ | {"OPENBLAS_NUM_THREADS": "1"}
     done = subprocess.run(
@@ -36,14 +36,14 @@ def run(command: list[str], folder: Path, code: int = 0) -> tuple[float, str]:
 
 
 def advised(printed: str) -> list[str]:
-    """The options behind the first "with", with what only the user knows."""
+    """Return the options after the first "with", with the facts that only the user knows."""
     advice = re.sub(r"\([^()]*\)", "", printed.partition(" with ")[2])
     advice = re.split(";| or ", advice)[0]
     return [RATIO if word == "RATIO" else word for word in shlex.split(advice)]
 
 
 def steps(runs: int) -> list[tuple[str, float, str]]:
-    """Command, CPU seconds and what it does, in their order."""
+    """Yield command, CPU seconds and purpose of each step, in order."""
     jointid = [sys.executable, "-m", "jointid"]
     log = LOG.name
     with tempfile.TemporaryDirectory() as name:
@@ -74,7 +74,7 @@ def steps(runs: int) -> list[tuple[str, float, str]]:
 
 
 def installed(wheel: Path) -> tuple[str, float, str]:
-    """A wheel in a new environment, NumPy already in it: the step before."""
+    """Install a wheel in a new environment with NumPy: the first step."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         subprocess.run([sys.executable, "-m", "venv", str(folder / "env")], check=True)

@@ -23,13 +23,13 @@ Table = dict[str, Array]
 
 TURN = 2.0 * np.pi
 DURATION = 12.0
-FINER = 5  # integration steps of 0.2 ms
+FINER = 5  # integration steps of 0.2 ms in a millisecond
 RATES = (1, 2, 4, 5, 10)  # ms between samples
 
 
 @dataclass(frozen=True, kw_only=True)
 class Drawn:
-    """A random joint and its motions, still to be simulated.
+    """A random joint and its motions, before the simulation.
 
     Attributes
     ----------
@@ -42,9 +42,9 @@ class Drawn:
     plant : dict
         Fields of `Plant`.
     noise : float
-        Of the recorded torque, standard deviation [N·m].
+        Standard deviation of the recorded torque [N·m].
     limit : float
-        Of the commanded torque [N·m].
+        Limit of the commanded torque [N·m].
     """
 
     motions: Sequence[Motion]
@@ -56,7 +56,7 @@ class Drawn:
 
     @property
     def bench(self) -> Bench:
-        """What is simulated: without noise, each millisecond."""
+        """Return the simulated bench: without noise, at each millisecond."""
         p = self.plant
         command = self.every if self.held else 1
         law = Law(
@@ -76,7 +76,7 @@ class Drawn:
 
     @property
     def truth(self) -> dict[str, float]:
-        """The joint's parameters by the package's names, without a torque sensor."""
+        """Return the joint's parameters by the package's names, without a torque sensor."""
         p = self.plant
         truth = {
             "inertia": p["inertia"] + p["link_inertia"],
@@ -86,13 +86,13 @@ class Drawn:
             "gravity_cos": 0.0,
             "gravity_sin": p["gravity"],
         }
-        if p["static"]:  # without it its shape means nothing
+        if p["static"]:  # without it its shape has no meaning
             truth |= {"static": p["static"], "stribeck": p["stribeck"]}
         return truth
 
 
 def simulated(drawn: Sequence[Drawn], duration: float = DURATION) -> list[list[Table]]:
-    """The runs of each, all simulated together: each millisecond, exact, `link` is the torque behind the gear."""
+    """Return exact runs of each joint at each millisecond, simulated together; `link` is the torque behind the gear."""
     benches = [each.bench for each in drawn]
     runs = iter(simulate(Bench.stack(benches), duration=duration, finer=FINER))
     return [[_table(next(runs)) for _ in each.motions] for each in drawn]
@@ -119,38 +119,38 @@ class Draw:
     ----------
     rng : Generator
     turn : int
-        How often the log's kind came before: what is to be seen in each variant takes turns.
+        Number of earlier logs of this kind, by which `variant` takes turns.
     """
 
     rng: np.random.Generator
     turn: int = 0
 
     def between(self, low: float, high: float) -> float:
-        """Evenly."""
+        """Draw evenly."""
         return float(self.rng.uniform(low, high))
 
     def scale(self, low: float, high: float) -> float:
-        """Evenly on a logarithmic scale."""
+        """Draw evenly on a logarithmic scale."""
         return float(np.exp(self.rng.uniform(np.log(low), np.log(high))))
 
     def whole(self, low: int, high: int) -> int:
-        """An integer, both ends included."""
+        """Draw an integer, both ends included."""
         return int(self.rng.integers(low, high + 1))
 
     def one(self, values: Sequence[T]) -> T:
-        """One of these."""
+        """Draw one of these."""
         return values[int(self.rng.integers(len(values)))]
 
     def variant(self, values: Sequence[T]) -> T:
-        """One of these, in turn."""
+        """Return one of these, in turn."""
         return values[self.turn % len(values)]
 
     def chance(self, share: float) -> bool:
-        """Whether a thing of this probability happens."""
+        """Draw whether an event of this probability happens."""
         return bool(self.rng.random() < share)
 
     def motion(self, amplitude: float) -> Motion:
-        """One run about this far [rad]: three sines, the thesis, a chirp, or trapezoids."""
+        """Return one run of about this travel [rad]: three sines, the thesis, a chirp, or trapezoids."""
         name = self.one(("sines", "sines", "thesis", "chirp", "trapezoids"))
         if name == "sines":
             sizes = amplitude * np.array([0.6, 0.3, 0.1]) * self.rng.uniform(0.8, 1.2, 3)
@@ -175,7 +175,7 @@ class Draw:
         held: bool = False,
         limit: float = 1e6,
     ) -> Drawn:
-        """A joint of any size with friction, inertia and weight in proportion to its motions.
+        """Draw a joint of any size with friction, inertia and weight in proportion to its motions.
 
         Parameters
         ----------
@@ -187,7 +187,7 @@ class Draw:
         held : bool
             Whether the torque is a command that is held between samples.
         limit : float
-            Of the torque beyond Coulomb friction and weight, as a share of what the motions need. Default: none.
+            Limit of the torque without Coulomb friction and weight, as a share of the need. Default: none.
         """
         times = np.arange(0.0, DURATION, 0.01)
         moves = [motion.at(times) for motion in motions]
@@ -222,15 +222,13 @@ class Draw:
         )
 
     def _has(self, given: bool | None, share: float) -> bool:
-        by_chance = self.chance(
-            share
-        )  # drawn in any case, so that what follows does not depend on it
+        by_chance = self.chance(share)  # always drawn, so that later draws do not depend on it
         return by_chance if given is None else given
 
     def sampled(
         self, run: Table, joint: Drawn, every: int = 0, *, velocity: bool = True, fine: float = 1.0
     ) -> Table:
-        """What a good drive records of a run: a fine encoder, little noise.
+        """Return a good drive's recording of a run: a fine encoder, little noise.
 
         Parameters
         ----------
@@ -260,14 +258,14 @@ class Draw:
 
 @dataclass(frozen=True, kw_only=True)
 class Layout:
-    """How a table is written: header and factor from SI of each signal, and what separates cells."""
+    """Format of a table: header and factor from SI of each signal, and the separator of cells."""
 
     headers: Mapping[str, str]
     factors: Mapping[str, float] = field(default_factory=dict)
     separator: str = ","
 
     def text(self, table: Table, *, header: bool = True) -> str:
-        """The file's text; signals without a header are left out."""
+        """Return the file's text; signals without a header are left out."""
         names = [name for name in self.headers if name in table]
         columns = [table[name] * self.factors.get(name, 1.0) for name in names]
         cells = [
@@ -280,7 +278,7 @@ class Layout:
 
 
 def layout(time: str, position: str, velocity: str, torque: str, **more: object) -> Layout:
-    """A layout of four headers; the factors are those of the units that stand in them."""
+    """Return one of four layouts; the factors are those of the units in the headers."""
     headers = {"time": time, "position": position, "velocity": velocity, "torque": torque}
     factors = {name: _factor(header) for name, header in headers.items()}
     return Layout(headers=headers, factors=factors, separator=str(more.get("separator", ",")))

@@ -1,6 +1,6 @@
-"""How soon Ctrl-C ends `identify` on a long recording: a child that identifies, a parent that interrupts.
+"""Time until Ctrl-C ends `identify` on a long recording: a child identifies, a parent interrupts.
 
-The signal is sent after shares of the time that the whole call takes; both read the same monotonic clock.
+The signal is sent after shares of the whole call's time. Both processes read the same monotonic clock.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ SHARES = np.linspace(0.02, 0.98, 25)
 
 
 def interrupted(samples: int) -> Record:
-    """Latencies [s] over the call, and how many calls were over before the signal."""
+    """Return latencies [s] over the call, and the number of calls that ended before the signal."""
     call = [sys.executable, str(Path(__file__).resolve()), str(samples)]
     with subprocess.Popen(
         call, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, bufsize=1
@@ -52,7 +52,7 @@ def interrupted(samples: int) -> Record:
 
 
 def child(samples: int) -> None:
-    """Identify on demand until the input ends; say when a call was interrupted or was over."""
+    """Identify on demand until the input ends; report whether a call was interrupted or complete."""
     from long_recording import long_recording
 
     import jointid as jid

@@ -1,7 +1,7 @@
-"""What a user waits for: imports, the command line, the first call, a file, a report. Ratios of CPU time.
+"""Waiting times of a user: imports, the command line, the first call, a file, a report. Ratios of CPU time.
 
-Each program is a new process with compiled bytecode, all of them in turn; the shortest CPU time of each counts, since
-what else the machine does only adds to it. Look at the ratios.
+Each program is a new process with compiled bytecode, all in turn. The shortest CPU time of each counts, because other
+work of the machine only adds to it. Only the ratios are meaningful.
 """
 
 import argparse
@@ -74,7 +74,7 @@ PART = Part(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """One line of the table: a time, and what it is compared with."""
+    """One line of the table: a time, and the time it is compared with."""
 
     what: str
     against: str = "`import numpy`"
@@ -102,7 +102,7 @@ _ROWS = (
 
 
 def seconds_of(command: list[str], environment: Mapping[str, str]) -> float:
-    """CPU time of a program and its threads."""
+    """Return the CPU time of a program and its threads."""
     with Path(os.devnull).open("w") as nowhere:
         process = subprocess.Popen(command, stdout=nowhere, stderr=nowhere, env=environment)
         _, status, used = os.wait4(process.pid, 0)

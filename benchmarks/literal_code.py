@@ -1,4 +1,4 @@
-"""Builds and runs the literal C++ transcription of the thesis's listing (`literal/genetic.cpp`)."""
+"""Build and run the literal C++ transcription of the thesis's listing (`literal/genetic.cpp`)."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ import jointid as jid
 
 SOURCE = Path(__file__).resolve().parent / "literal" / "genetic.cpp"
 POPULATION, GENERATIONS = 200, 1500
-TIMED = 20  # generations that are run; the cost of a generation does not depend on its number
+TIMED = 20  # number of run generations; the cost of a generation does not depend on its index
 
 
 def measure(recording: jid.Recording, folder: Path, repeats: int) -> Record:
-    """Seconds a candidate and, in proportion, of 200 × 1500; medians."""
+    """Return seconds per candidate and, in proportion, of 200 × 1500; medians."""
     r = recording
     folder.mkdir(parents=True, exist_ok=True)
     program, text = folder / "genetic", folder / "recording.txt"

@@ -1,4 +1,4 @@
-"""Load friction: how often it wins where there is none, and what becomes of a true one. Prints markdown.
+"""Load friction: how often it is chosen although there is none, and how well a true one is found. Markdown.
 
 python benchmarks/load_friction.py [runs of each kind, default 14]
 """
@@ -36,7 +36,7 @@ OTHERS = {
 
 
 def without(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, jid.Joint, Bench]]:
-    """Joints without load friction, each with another error of the model."""
+    """Yield joints without load friction, each with another error of the model."""
     for name, (plant, log) in OTHERS.items():
         values = {"coulomb": rng.uniform(10, 30, runs), "viscous": rng.uniform(10, 25, runs)}
         yield (
@@ -62,7 +62,7 @@ def without(runs: int, rng: np.random.Generator) -> Iterator[tuple[str, jid.Join
 def loaded(
     runs: int, rng: np.random.Generator, size: float
 ) -> Iterator[tuple[str, jid.Joint, Bench]]:
-    """Joints with a load friction of this size, by the torque behind the gear."""
+    """Return joints with a load friction of this size, by the torque behind the gear."""
     sensed = Log()
     blind = Log(sensor=0.0, torque_noise=0.2)
     for name, joint, log, inertia in (

@@ -1,4 +1,4 @@
-"""Readers of a .csv of a million rows and six columns: time, throughput, and what else they bring. Markdown.
+"""Readers of a .csv of a million rows and six columns: time, throughput, and other features. Markdown.
 
 Each reader gives the columns as NumPy doubles; they are timed in turn, and the table shows medians. `jid.load` does
 more: headers, units, checks of the signals, gaps.
@@ -18,7 +18,7 @@ import jointid as jid
 
 
 def written(folder: Path, rows: int) -> Path:
-    """The file."""
+    """Write the file."""
     rng = np.random.default_rng(0)
     walks = np.cumsum(rng.normal(size=(rows, 5)), axis=0) * 1e-3
     path = folder / "million.csv"
@@ -29,7 +29,7 @@ def written(folder: Path, rows: int) -> Path:
 
 
 def readers(path: Path) -> dict[str, Callable[[], object]]:
-    """By name, as far as installed."""
+    """Return the readers by name, as far as installed."""
     found: dict[str, Callable[[], object]] = {
         "the file's bytes alone": path.read_bytes,
         "numpy.loadtxt, stream": lambda: np.loadtxt(path, delimiter=",", skiprows=1, comments=None),
@@ -54,7 +54,7 @@ def readers(path: Path) -> dict[str, Callable[[], object]]:
 
 
 def main(rows: int, runs: int) -> None:
-    """Time, in turn, and print."""
+    """Time the readers in turn, and print."""
     with tempfile.TemporaryDirectory() as folder:
         path = written(Path(folder), rows)
         megabytes = path.stat().st_size / 1e6

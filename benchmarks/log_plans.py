@@ -1,4 +1,4 @@
-"""What a kind of fault makes for `faulty_logs.py`: a plan of a joint to simulate, and the log written of its runs."""
+"""Plans for the faults of `faulty_logs.py`: a joint to simulate, and the log written from its runs."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ class Log:
         Text by file name.
     truth : mapping of str to float
     options : tuple of str
-        What a user would know and add to `identify`.
+        Options that a user would know and add to `identify`.
     causes : str
         A pattern of the right name of the cause, in a finding's code or sentence, or in an error.
     never : str
-        A pattern of findings that would be false, even beside right values.
+        A pattern of findings that would be false, even with right values.
     what : str
         The fault and its size.
     paste : bool
-        Whether an error's mapping of columns is pasted behind the command, once.
+        Whether an error's mapping of columns is once appended to the command.
     """
 
     files: Mapping[str, str]
@@ -42,7 +42,7 @@ class Log:
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """A joint to simulate, and how its log is written from the runs."""
+    """A joint to simulate, and the function that writes its log from the runs."""
 
     drawn: Drawn
     write: Callable[[list[Table]], Log]
@@ -51,7 +51,7 @@ class Plan:
 def one_run(
     draw: Draw, change: Callable[[Draw, Table, Drawn], Log], *, rates: Sequence[int] = RATES
 ) -> Plan:
-    """A single ordinary run; `change` makes the log of the sampled table."""
+    """Return a single ordinary run; `change` makes the log of the sampled table."""
     every, held = draw.one(rates), draw.chance(0.3)
     drawn = draw.joint([draw.motion(draw.scale(0.5, 1.5))], every, held=held)
 
@@ -62,7 +62,7 @@ def one_run(
 
 
 def log_of(draw: Draw, tables: Sequence[Table], drawn: Drawn, **more: object) -> Log:
-    """The log of tables: any usual layout, one of three compressed; a user knows that a command is held."""
+    """Write the log of tables in any usual layout, one of three compressed; a user knows that a command is held."""
     form = more.pop("form", None)
     form = form if isinstance(form, Layout) else draw.one(LAYOUTS)
     ending = ".csv.gz" if draw.chance(1 / 3) else ".csv"

@@ -1,8 +1,8 @@
-"""Identify a recording of so many samples in a process of its own; prints times and memory as JSON.
+"""Identify a recording of this many samples in a process of its own; print times and memory as JSON.
 
     python benchmarks/long_recording.py SAMPLES REPEATS
 
-The process is its own because the peak of memory is kept for a process's whole life.
+A process of its own, because the peak of memory is kept for a process's whole life.
 """
 
 import json
@@ -22,13 +22,13 @@ from jointid import _core
 from jointid.identification.search.domain import domain_for
 
 Array = NDArray[np.float64]
-NOISE = 1e-3  # of a signal's spread, fresh for every copy
+NOISE = 1e-3  # of a signal's spread, new for every copy
 CANDIDATES = 10_000
 GENERATIONS = 100
 
 
 def long_recording(samples: int) -> jid.Recording:
-    """`well_excited` again and again, in continuous time and position, each copy with its own noise."""
+    """Repeat `well_excited`, in continuous time and position, each copy with its own noise."""
     rng = np.random.default_rng(samples)
     one = jid.load(WELL_EXCITED)
     assert one.velocity is not None
@@ -56,7 +56,7 @@ def long_recording(samples: int) -> jid.Recording:
 
 
 def status(field: str) -> int:
-    """VmRSS or VmHWM [bytes]."""
+    """Return VmRSS or VmHWM [bytes]."""
     for line in Path("/proc/self/status").read_text().splitlines():
         if line.startswith(field + ":"):
             return int(line.split()[1]) * 1024
@@ -64,14 +64,14 @@ def status(field: str) -> int:
 
 
 def forget_peak() -> None:
-    """From here on the peak counts; a child starts with its parent's."""
+    """Reset the peak, because a child starts with its parent's."""
     Path("/proc/self/clear_refs").write_text("5")
 
 
 def search_speed(recording: jid.Recording, joint: jid.Joint) -> dict[str, float]:
-    """Seconds a candidate of the compressed penalty, and an individual of the genetic search, breeding and all.
+    """Return seconds per candidate of the compressed penalty, and per individual of the genetic search with breeding.
 
-    One thread, the least of several: the recording's length is to make no difference.
+    One thread, the least of several. The recording's length must make no difference.
     """
     problem, direct = problem_of(recording, joint, None)
     domain = domain_for(direct, joint, None, problem.peak_speed)
@@ -119,8 +119,8 @@ def main(samples: int, repeats: int) -> None:
         estimate = jid.identify(recording, joint)
         seconds.append(time.perf_counter() - began)
         windows = len(estimate.windows.residual)
-        if len(seconds) == 1:  # later calls find what the allocator has kept
-            # getrusage's peak is the same where it can be reset, which is what clear_refs does.
+        if len(seconds) == 1:  # later calls reuse the allocator's memory
+            # getrusage's peak equals this one where it can be reset, which clear_refs does.
             peak = min(status("VmHWM"), 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
     measured = {
         "samples": samples,

@@ -1,4 +1,4 @@
-"""How much memory and time a log of JointState messages takes to load.
+"""Memory and time to load a log of JointState messages.
 
     python benchmarks/message_logs.py --messages 1000000 --joints 1
 
@@ -25,7 +25,7 @@ _START = 1_732_262_400_123_456_789
 
 
 def written(path: Path, messages: int, joints: int) -> Path:
-    """Write the file: the same message again and again, with other numbers at their places."""
+    """Write the file: the same message repeatedly, with other numbers."""
     from mcap.writer import Writer
     from rosbags.typesys import Stores, get_typestore
 

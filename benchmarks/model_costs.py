@@ -1,4 +1,4 @@
-"""What the general Stribeck model costs beside the plain one: CPU time of whole calls and of a candidate, in turn."""
+"""Cost of the general Stribeck model against the plain one: CPU time of whole calls and per candidate, in turn."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PLAIN = "`stribeck`"
 
 
 def measure(contest: Contest) -> list[Record]:
-    """A record a row: the whole call, and its share of the plain model's."""
+    """Record, per row, the whole call and its ratio to the plain model's."""
 
     def call(
         model: Literal["stribeck", "stribeck_general"],

@@ -1,9 +1,9 @@
-"""How long the on-line identifier takes for an update, in a process of its own; prints JSON.
+"""Time of an update of the online identifier, in a process of its own; prints JSON.
 
     python benchmarks/online_updates.py
 
-A minute and a half of samples at 1 kHz in blocks of 50, window 30 s. An update's time is that from handing
-over the block that completes it to the end of the wait for it.
+A minute and a half of samples at 1 kHz in blocks of 50, window 30 s. An update's time begins when the block that
+completes it is passed, and ends with the wait for the update.
 """
 
 import json

@@ -72,14 +72,14 @@ GROWTH = Part(
 
 
 def versions() -> dict[str, str]:
-    """Of what was timed; of jointid with the commit, so that no run continues after a change of the code."""
+    """Return versions of the timed programs; that of jointid has the commit, so that a change starts a new run."""
     libraries = {name: version(name) for name in LIBRARIES}
     ours = f"{jid.__version__} ({commit()})"
     return {"jointid": ours, "python": platform.python_version(), **libraries}
 
 
 def machine() -> str:
-    """Processor, cores, compiler."""
+    """Return processor, cores, compiler."""
     model = platform.processor() or platform.machine()
     for line in Path("/proc/cpuinfo").read_text().splitlines():
         if line.startswith("model name"):
@@ -90,7 +90,7 @@ def machine() -> str:
 
 
 def seconds(value: float) -> str:
-    """A time with three figures and its unit."""
+    """Return a time with three figures and its unit."""
     for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, "µs")):
         if value * factor >= 1.0:
             return f"{value * factor:.3g} {unit}"
@@ -98,14 +98,14 @@ def seconds(value: float) -> str:
 
 
 def judged(verdict: Verdict) -> str:
-    """What was measured: bold where it is missed, with a question mark where it is not decided."""
+    """Return a measured value: bold if it is missed, with a question mark if it is not decided."""
     if verdict.holds is None:
         return f"{verdict.measured} (limit too short to decide)"
     return verdict.measured if verdict.holds else f"**{verdict.measured}**"
 
 
 def contest_rows(store: Store, order: list[str]) -> Iterator[list[str]]:
-    """A line a search, with its medians by the form of the penalty."""
+    """Return one line per search, with its medians by the form of the penalty."""
     by_name: dict[str, dict[str, Row]] = {}
     for row in rows(store, order):
         by_name.setdefault(row.name, {})[row.form] = row
@@ -121,14 +121,14 @@ def contest_rows(store: Store, order: list[str]) -> Iterator[list[str]]:
 
 
 def growth_rows(store: Store) -> Iterator[list[str]]:
-    """A line a number of windows, then a line a population."""
+    """Return one line per number of windows, then one per population."""
     for over in ("windows", "population"):
         for r in store.of("scaling", over=over):
             yield [f"{over} {r[over]:,}", seconds(r["seconds"]), seconds(r["candidate"])]
 
 
 def publish_all(store: Store, order: list[str], limit: float, *, write: bool) -> None:
-    """Print all parts, and write them into the page if that is wanted."""
+    """Print all parts, and write them into the page if requested."""
     found = rows(store, order)
     (literal,) = store.of("literal")
     candidates = [[r["name"], seconds(r["seconds"])] for r in store.of("candidate")]
@@ -162,7 +162,7 @@ def publish_all(store: Store, order: list[str], limit: float, *, write: bool) ->
 
 
 def anatomy_rows(store: Store) -> Iterator[list[str]]:
-    """A step a line, by the number of windows."""
+    """Return one line per step, by the number of windows."""
     records = store.of("anatomy")
     for step in STEPS:
         yield [step, *(seconds(r["steps"][step]) for r in records)]

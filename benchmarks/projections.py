@@ -47,7 +47,7 @@ PART = Part(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Given:
-    """A ready penalty, as each search is handed it."""
+    """A ready penalty, as each search receives it."""
 
     name: str
     direct: _core.Penalty
@@ -57,7 +57,7 @@ class Given:
 
 
 def given(name: str, recordings: tuple[jid.Recording, ...], joint: jid.Joint, model: str) -> Given:
-    """The default penalty of `identify` for these recordings."""
+    """Return the default penalty of `identify` for these recordings."""
     choice = choose_terms(recordings, joint, Request(model=Model.of(model)))
     problem = Problem(recordings=recordings, joint=joint, choice=choice)
     direct = problem.penalty(None)
@@ -75,7 +75,7 @@ def given(name: str, recordings: tuple[jid.Recording, ...], joint: jid.Joint, mo
 
 
 def problems() -> list[Given]:
-    """The table's rows."""
+    """Return the table's rows."""
     folder = data_folder()
     excited, thesis = jid.load(WELL_EXCITED), jid.thesis_joint()
     robot = jid.load(folder / "kr300_joint1.csv.gz")
@@ -98,7 +98,7 @@ def problems() -> list[Given]:
 
 
 def projected(penalty: Projection, problem: Given) -> float:
-    """Variable projection to the end of SciPy's search; the penalty found."""
+    """Run variable projection to the end of SciPy's search; return the penalty."""
     count = problem.direct.coefficients
     low, high = problem.domain.lower[count:], problem.domain.upper[count:]
     if len(low) == 1:
@@ -116,7 +116,7 @@ def projected(penalty: Projection, problem: Given) -> float:
 
 
 def genetic(problem: Given) -> float:
-    """Compression, our default genetic search and its polish."""
+    """Run compression, our default genetic search and its polish."""
     low, high = problem.domain.lower, problem.domain.upper
     form = Engine.of(problem.direct, problem.domain, 0).form
     found = _core.minimise_genetic(form, low, high, options=_core.GaOptions(), seed=0)
@@ -124,7 +124,7 @@ def genetic(problem: Given) -> float:
 
 
 def separable(problem: Given) -> float:
-    """Our separable search: by projection, or from the compressed penalty where that is not safe."""
+    """Run our separable search: by projection, or from the compressed penalty where that is not safe."""
     low, high = problem.domain.lower, problem.domain.upper
     projected = _core.minimise_projected(problem.direct, low, high).found
     if projected is not None:
@@ -134,12 +134,12 @@ def separable(problem: Given) -> float:
 
 
 def measure() -> list[Record]:
-    """A record a problem.
+    """Return one record per problem.
 
     Raises
     ------
     AssertionError
-        A search ended elsewhere than the others.
+        A search ended at another optimum than the others.
     """
     records = []
     for problem in problems():
@@ -169,7 +169,7 @@ def measure() -> list[Record]:
 
 
 def main(*, write: bool) -> None:
-    """Measure, and publish a line a problem."""
+    """Measure, and publish one line per problem."""
     records = measure()
     rows = []
     for r in records:

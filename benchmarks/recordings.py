@@ -1,4 +1,4 @@
-"""Where the recordings of the examples lie: the package holds only those of `jointid demo`."""
+"""Folder of the example recordings; the package contains only those of `jointid demo`."""
 
 from pathlib import Path
 

@@ -36,7 +36,7 @@ PART = Part(
     "wrong, and clean ones that are doubted: {bad}.",
 )
 _WRONG = 0.05  # of a value, outside its interval
-_SHOWN = 14  # cases that are listed one by one
+_SHOWN = 14  # number of cases that are listed one by one
 _NAMED = {  # codes of findings that name the fault
     "signs": {
         *("reversed_torques", "reversed_positions"),
@@ -55,19 +55,19 @@ _NAMED = {  # codes of findings that name the fault
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What a call says, and whether it is so."""
+    """Output of a call, and whether it is right."""
 
     fault: str
     detail: str
     seed: int
     level: str  # of the verdict; "refused" for an error
-    worst: float  # error of Coulomb or viscous friction outside its interval, the largest
+    worst: float  # largest error of Coulomb or viscous friction outside its interval
     codes: tuple[str, ...]  # of all findings, the most severe first
     seconds: float  # of the processor
 
     @property
     def kind(self) -> str:
-        """How it ends."""
+        """Kind of the outcome."""
         if self.level in ("refused", "not usable"):
             return "refused"
         if self.level == "usable with care":
@@ -76,7 +76,7 @@ class Outcome:
 
     @property
     def is_named(self) -> bool:
-        """Whether a finding names the fault."""
+        """Return whether a finding names the fault."""
         return bool(_NAMED.get(self.fault, set()) & set(self.codes))
 
 
@@ -117,14 +117,14 @@ def _worst(log: FaultyLog, found: jid.RobotEstimate) -> float:
 
 
 def cases(faulty: int, clean: int, only: str) -> Iterator[tuple[int, str]]:
-    """Seed and fault of each log: the faults in turn."""
+    """Return seed and fault of each log: the faults in turn."""
     every = [(seed, FAULTS[seed % len(FAULTS)]) for seed in range(faulty)]
     every += [(10_000 + seed, "clean") for seed in range(clean)]
     yield from (each for each in every if only in each[1])
 
 
 def table(found: Sequence[Outcome]) -> Iterator[list[object]]:
-    """Yield one row a fault."""
+    """Yield one row per fault."""
     kinds = ("wrong", "refused", "doubted", "right")
     for fault in dict.fromkeys(each.fault for each in found):
         mine = [each for each in found if each.fault == fault]
@@ -135,7 +135,7 @@ def table(found: Sequence[Outcome]) -> Iterator[list[object]]:
 
 
 def bad(found: Sequence[Outcome]) -> str:
-    """The cases that end wrong, as a list."""
+    """Return the cases with a bad outcome, as a list."""
     shown = [
         each
         for each in found
@@ -145,7 +145,7 @@ def bad(found: Sequence[Outcome]) -> str:
 
 
 def line(each: Outcome) -> str:
-    """One case."""
+    """Return the line of one case."""
     codes = ", ".join(dict.fromkeys(each.codes)) or "no warning"
     detail = f" ({each.detail})" if each.detail else ""
     return (
@@ -157,9 +157,9 @@ def line(each: Outcome) -> str:
 def main() -> None:
     """Run the study and publish its table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--faulty", type=int, default=100, help="arms with a fault")
-    parser.add_argument("--clean", type=int, default=50, help="arms without")
-    parser.add_argument("--only", default="", help="faults whose name contains this")
+    parser.add_argument("--faulty", type=int, default=100, help="number of arms with a fault")
+    parser.add_argument("--clean", type=int, default=50, help="number of arms without a fault")
+    parser.add_argument("--only", default="", help="only faults with this in their name")
     parser.add_argument("--write", action="store_true", help="write it into the page, too")
     given = parser.parse_args()
     found = []

@@ -1,4 +1,4 @@
-"""The contest's schedule: one seed of every peer in turn, so that a drift of the machine hits all alike."""
+"""The contest's schedule: one seed of every peer in turn, so that a drift of the machine affects all equally."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from peers.peer import Peer, timed
 from store import Store
 
 SEEDS = 30
-FEW = 7  # the least a ratio is claimed of
-FAILED = 3  # runs after which a peer that never reached the target is left alone
-LIMIT = 20.0  # [s] a run
-SLOW = 2.0  # [s] a run, beyond which `FEW` must do
+FEW = 7  # least number of runs for which a ratio is claimed
+FAILED = 3  # runs after which a peer that never reached the target is dropped
+LIMIT = 20.0  # [s] per run
+SLOW = 2.0  # [s] per run; slower peers get only `FEW` runs
 WARM = 0.05  # [s] of each peer before the first round: lazy imports, caches
-HOPELESS = 10  # rows expected to use up their limit; they get half the time
+HOPELESS = 10  # number of rows that are expected to use up their limit; they get half the time
 
 
 def limit_for(seconds: float) -> float:
-    """Wall-time limit of a run, when so much time is there for all."""
+    """Return the wall-time limit of a run from the time for all."""
     return min(LIMIT, 0.5 * seconds / (FAILED * HOPELESS))
 
 
 def run_contest(
     peers: list[Peer], contest: Contest, store: Store, *, seeds: int, seconds: float, limit: float
 ) -> None:
-    """All rounds. The first `FAILED` are run whatever they take, the others while time is left."""
+    """Run all rounds. The first `FAILED` always run, the others while time is left."""
     for peer in peers:
         timed(peer, contest, 0, WARM)
-    # A collection before each run keeps one peer's garbage off another's clock. It must not walk over all that the
-    # libraries have loaded: behind that the caches are cold, which nobody's run is to blame for.
+    # A collection before each run keeps one peer's garbage out of another's time. It must not visit all objects of the
+    # libraries, because the caches would then be cold.
     gc.collect()
     gc.freeze()
     ends = time.perf_counter() + seconds
@@ -51,7 +51,7 @@ def run_contest(
 
 
 def _wanted(runs: list[dict[str, float]]) -> int:
-    """Runs that this peer is to have, by those that it has had."""
+    """Return the number of runs that this peer should have, from its runs so far."""
     if len(runs) < FAILED:
         return FAILED
     if max(run["seconds"] for run in runs) < SLOW:

@@ -1,4 +1,4 @@
-"""How time and memory grow: samples, windows, population. Medians of few runs, each a record."""
+"""Growth of time and memory: samples, windows, population. Medians of few runs, each a record."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ HERE = Path(__file__).resolve().parent
 
 
 def median(call: Callable[[], object], repeats: int = REPEATS) -> float:
-    """Seconds a call."""
+    """Return seconds per call."""
     seconds = []
     for _ in range(repeats):
         began = time.perf_counter()
@@ -37,7 +37,7 @@ def median(call: Callable[[], object], repeats: int = REPEATS) -> float:
 
 
 def by_samples(largest: int) -> Iterator[Record]:
-    """Whole `identify` calls on recordings of 6 s to 100 minutes, with the peak of memory."""
+    """Time whole `identify` calls on recordings of 6 s to 100 minutes, with the peak of memory."""
     for samples in SAMPLES:
         if samples > largest:
             return
@@ -46,12 +46,12 @@ def by_samples(largest: int) -> Iterator[Record]:
 
 
 def online() -> Record:
-    """Times of the on-line identifier's updates."""
+    """Time the online identifier's updates."""
     return {"kind": "online", **_child("online_updates.py")}
 
 
 def _child(program: str, *arguments: str) -> Record:
-    """What a program of this folder prints, run in a process of its own."""
+    """Return the output of a program of this folder, run in its own process."""
     call = [sys.executable, str(HERE / program), *arguments]
     printed = subprocess.run(call, check=True, text=True, capture_output=True).stdout
     record: Record = json.loads(printed)
@@ -59,7 +59,7 @@ def _child(program: str, *arguments: str) -> Record:
 
 
 def by_windows(contest: Contest) -> Iterator[Record]:
-    """Whole `identify` calls, and the compressed penalty's time per candidate."""
+    """Time whole `identify` calls, and the compressed penalty per candidate."""
     rng = np.random.default_rng(2)
     free = rng.uniform(contest.lower, contest.upper, (2000, contest.lower.size))
     rows = np.asfortranarray(np.array([contest.full(row) for row in free]).T)
@@ -77,7 +77,7 @@ def by_windows(contest: Contest) -> Iterator[Record]:
 
 
 def by_population(contest: Contest) -> Iterator[Record]:
-    """The genetic search on the compressed penalty, one thread."""
+    """Time the genetic search on the compressed penalty, one thread."""
     low, high = contest.full_lower, contest.full_upper
     form = _core.CompressedPenalty(contest.direct, low, high)
     for population in POPULATIONS:
@@ -97,7 +97,7 @@ def by_population(contest: Contest) -> Iterator[Record]:
 
 
 def measure(contest: Contest, store: Store, largest: int) -> None:
-    """Whatever the store does not have yet."""
+    """Measure everything that the store does not have yet."""
     parts: dict[str, Callable[[], Iterator[Record]]] = {
         "samples": lambda: by_samples(largest),
         "windows": lambda: by_windows(contest),

@@ -1,4 +1,4 @@
-"""Part of `servo_study.py`: simulated benches with known truth, as they should be and with something that is not."""
+"""Part of `servo_study.py`: simulated benches with known truth, without and with a broken assumption."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from simulated_servo import COULOMB, MASS, Bench, Truth, bench_runs, servo_joint
 import jointid as jid
 
 FIRST_SEED = 1000
-"""Seeds below were looked at while the method was made."""
+"""Lower seeds were used for the development of the method."""
 
 BENCHES = Part(
     title="Servos without a torque signal",
@@ -31,7 +31,7 @@ SHOWN = ("torque_per_voltage", "load_friction", "inertia", "torque_constant")
 
 
 def drawn_truth(seed: int) -> Truth:
-    """A servo within 30 % of the nominal one."""
+    """Draw a servo within 30 % of the nominal one."""
     factors = np.random.default_rng([seed, 7]).uniform(0.7, 1.3, 6)
     nominal = Truth()
     names = ("torque_constant", "resistance", "viscous", "coulomb", "load_friction", "inertia")
@@ -39,7 +39,7 @@ def drawn_truth(seed: int) -> Truth:
 
 
 class Tally:
-    """Errors, coverage and widths of the intervals, and what was found, over benches."""
+    """Errors, coverage and widths of the intervals, and findings, over benches."""
 
     def __init__(self) -> None:
         self.errors: dict[str, list[float]] = {}
@@ -58,7 +58,7 @@ class Tally:
 
 
 def bench_table(seeds: Sequence[int]) -> tuple[list[list[str]], str]:
-    """Errors and coverage over benches; how many benches have a finding."""
+    """Return errors and coverage over benches, and how many benches have a finding."""
     tally = Tally()
     for seed in seeds:
         truth = drawn_truth(seed)
@@ -88,7 +88,7 @@ BROKEN: dict[str, tuple[Bench, dict[str, Any]]] = {
     "play of 0.5° between load and sensor": (Bench(play=float(np.radians(0.5))), {}),
     "the mass is 5 % more than stated": (Bench(mass=1.05 * MASS), {}),
 }
-"""What is not as assumed: of the bench, and of what is stated."""
+"""Broken assumptions about the bench, and about the stated facts."""
 
 
 BROKEN_BENCHES = Part(
@@ -100,7 +100,7 @@ BROKEN_BENCHES = Part(
 
 
 def broken_table(seeds: Sequence[int]) -> Iterator[list[str]]:
-    """Errors, coverage and findings where an assumption does not hold."""
+    """Return errors, coverage and findings where an assumption does not hold."""
     for name, (bench, stated) in BROKEN.items():
         tally = Tally()
         for seed in seeds:

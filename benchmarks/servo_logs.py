@@ -16,7 +16,7 @@ import jointid as jid
 ROOT = Path(__file__).resolve().parents[1]
 LOGS = ROOT / "tests" / "data" / "xl330" / "bam_xl330.csv.gz"
 SEARCHED = ROOT / "build" / "servo_evolution.json"
-"""What the peer has found so far: its searches take minutes, and an interrupted study goes on from there."""
+"""Results of the peer so far. Its searches take minutes, and an interrupted study continues from there."""
 
 LOAD = jid.Model("coulomb_viscous", load_friction=True)
 PLAIN = jid.Model("coulomb_viscous", load_friction=False)
@@ -33,11 +33,11 @@ TIMES = Part(
     asked="How long do the calls take with all 16 runs? Best of {repeats} calls.",
     header=("call", "processor", "wall"),
 )
-REPEATS = 20  # of a timed call; the best counts, since other programs cost time, too
+REPEATS = 20  # of a timed call; the best counts, because other programs cost time, too
 
 
 def xl330_joint(resistance: float | None = None) -> jid.Joint:
-    """BAM's bench: a pendulum of 0.49 kg at 0.1 m."""
+    """Return BAM's bench: a pendulum of 0.49 kg at 0.1 m."""
     loop = jid.PositionLoop(gain=4096.0 / (2.0 * np.pi) / (256.0 * 885.0))
     signals = {"duty": "duty", "driven": "torque_enabled", "gain": "firmware_kp"}
     return jid.Joint(
@@ -50,7 +50,7 @@ def xl330_joint(resistance: float | None = None) -> jid.Joint:
 
 
 def xl330_runs(logs: Path) -> tuple[list[jid.Recording], dict[str, list[float]]]:
-    """The runs, and how they are held out: by gain, and by trajectory."""
+    """Return the runs, and the held-out groups: by gain, and by trajectory."""
     signals = {"duty": "duty", "driven": "torque_enabled", "gain": "firmware_kp"}
     runs = list(jid.load_runs(logs, by="run_index", extra=signals))
     # The four trajectories follow each other at each gain.
@@ -68,7 +68,7 @@ def held_out(
     *,
     peer: bool,
 ) -> tuple[NDArray[np.float64], float]:
-    """Closed-loop errors of held-out runs [deg]; seconds of one fit of the peer."""
+    """Return closed-loop errors of held-out runs [deg], and seconds of one fit of the peer."""
     errors = np.zeros(len(runs))
     spent = []
     for value in sorted(set(groups)):
@@ -89,7 +89,7 @@ def held_out(
 def _searched(
     train: list[jid.Recording], joint: jid.Joint, model: jid.Model, key: str
 ) -> tuple[jid.Joint, float]:
-    """The peer's joint, and seconds: as found before, or searched now."""
+    """Return the peer's joint and its seconds: stored from before, or searched now."""
     from peers.servo_evolution import described, evolved
 
     known = json.loads(SEARCHED.read_text(encoding="utf-8")) if SEARCHED.exists() else {}
@@ -104,7 +104,7 @@ def _searched(
 
 
 def held_out_rows(logs: Path, *, peer: bool) -> Iterator[list[str]]:
-    """Held-out errors of both models, by windows and by the peer."""
+    """Return held-out errors of both models, by windows and by the peer."""
     runs, groups = xl330_runs(logs)
     for model, name in ((LOAD, "with load friction"), (PLAIN, "Coulomb and viscous")):
         for resistance in (None, 4.0):
@@ -126,7 +126,7 @@ def _errors(degrees: NDArray[np.float64]) -> str:
 
 
 def time_rows(logs: Path) -> Iterator[list[str]]:
-    """Times of the calls, the best of several."""
+    """Return times of the calls, the best of several."""
     runs, _ = xl330_runs(logs)
     joint = xl330_joint()
     found = jid.identify_servo(runs, joint)

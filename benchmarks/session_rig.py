@@ -25,14 +25,14 @@ _TRUTH = {
 
 
 def _joint() -> jid.Joint:
-    """With its link about the vertical."""
+    """Return the joint with its link about the vertical."""
     joint = jid.thesis_joint()
     assert joint.link is not None
     return joint.replace(link=dataclasses.replace(joint.link, angle=-math.pi / 2.0))
 
 
 def devices(seed: int = 0) -> tuple[EmulatedElmo, EmulatedConverter]:
-    """The drive and the sensor's converter."""
+    """Return the drive and the sensor's converter."""
     true = _joint().with_parameters(_TRUTH)
     sensors = jid.Sensors(torque_noise=0.5)
     drive = EmulatedElmo(stepped_joint(true, sensors=sensors, period=PERIOD, seed=seed))
@@ -40,7 +40,7 @@ def devices(seed: int = 0) -> tuple[EmulatedElmo, EmulatedConverter]:
 
 
 def run(bus: EmulatedBus, seconds: float, output: Path | None = None) -> jid.Recording:
-    """A session of so many seconds on a bus with the devices; the bus is shut down."""
+    """Run a session of this duration [s] on a bus with the devices; the bus is shut down."""
     joint = _joint()
     believed = jid.control_estimates(joint.with_parameters(_TRUTH))
     law = jid.AdaptiveRobust(**believed).replace(friction_velocity="reference")

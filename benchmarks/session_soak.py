@@ -1,4 +1,4 @@
-"""Sessions again and again on the virtual clock: nothing may grow, no sample may be lost."""
+"""Repeated sessions on the virtual clock: nothing may grow, no sample may be lost."""
 
 from __future__ import annotations
 
@@ -17,28 +17,28 @@ _MOST_GROWN = 20e6  # [bytes]
 
 
 def resident() -> int:
-    """Resident memory [bytes]."""
+    """Return the resident memory [bytes]."""
     pages = int(Path("/proc/self/statm").read_text().split()[1])
     return pages * 4096
 
 
 def count(what: str) -> int:
-    """Open entries of this process: threads ("task") or files ("fd")."""
+    """Count the open entries of this process: threads ("task") or files ("fd")."""
     return len(list(Path(f"/proc/self/{what}").iterdir()))
 
 
 @dataclass(frozen=True, kw_only=True)
 class Soaked:
-    """What many sessions have left behind.
+    """State after many sessions.
 
     Attributes
     ----------
     sessions, samples, lost : int
-        `lost`: of samples and of the drive's answers, in memory or on disk.
+        `lost` counts samples and the drive's answers, in memory or on disk.
     grown : int
-        Resident memory [bytes].
+        Growth of the resident memory [bytes].
     threads, files : tuple of int
-        Before and after.
+        Numbers before and after.
     """
 
     sessions: int
@@ -63,7 +63,7 @@ class Soaked:
 
 
 def one_session(path: Path, seconds: float, seed: int) -> tuple[int, int]:
-    """Samples of a session that is kept on disk at `path`, and how many of them are lost."""
+    """Return the samples of a session that is kept on disk at `path`, and the number of lost ones."""
     recording = run(EmulatedBus(*devices(seed)), seconds, path)
     expected = round(seconds / PERIOD)
     on_disk = jid.load(path)
@@ -79,14 +79,14 @@ def one_session(path: Path, seconds: float, seed: int) -> tuple[int, int]:
 
 
 def soak_sessions(minutes: float, seconds: float = 12.0, settle: int = 10) -> Soaked:
-    """Run sessions of so many seconds for so many emulated minutes, the first few to warm up."""
+    """Run sessions of this many seconds for this many emulated minutes, the first few to warm up."""
     samples = lost = 0
     before = (0, 0, 0)
     rounds = max(1, round(60.0 * minutes / seconds))
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "run.csv"
         for k in range(-settle, rounds):
-            gc.collect()  # drive and bus know each other: garbage until it is searched for
+            gc.collect()  # drive and bus reference each other, so only a collection frees them
             if k == 0:
                 before = resident(), count("task"), count("fd")
             taken, missing = one_session(path, seconds, seed=k + settle)

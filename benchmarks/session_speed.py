@@ -1,9 +1,9 @@
-"""How much of a cycle a session itself takes, on the virtual clock: all but what the bus and its devices do.
+"""Share of a cycle that a session itself takes on the virtual clock, without the bus and its devices.
 
     python benchmarks/session_speed.py [--seconds 20] [--rounds 5]
 
 A cycle begins when the wait for it ends and ends when the next wait begins; the time inside the bus's `send`
-and `recv`, where python-can and the emulated devices work, is taken off. Quietest of several rounds.
+and `recv`, where python-can and the emulated devices work, is subtracted. The quietest of several rounds counts.
 """
 
 import argparse
@@ -20,7 +20,7 @@ from jointid.hardware.emulated.bus import EmulatedBus
 
 
 class TimedBus(EmulatedBus):
-    """Notes for each cycle the time that was spent outside of it."""
+    """Records the time outside of each cycle."""
 
     def __init__(self, *devices: Any) -> None:
         self.cycles: list[float] = []
@@ -29,20 +29,20 @@ class TimedBus(EmulatedBus):
         super().__init__(*devices)
 
     def send(self, msg: can.Message, timeout: float | None = None) -> None:
-        """Send, timed."""
+        """Send a frame, timed."""
         begin = time.perf_counter()
         super().send(msg, timeout)
         self._inside += time.perf_counter() - begin
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """Receive, timed."""
+        """Receive a frame, timed."""
         begin = time.perf_counter()
         message = super().recv(timeout)
         self._inside += time.perf_counter() - begin
         return message
 
     def sleep_until(self, deadline: float) -> None:
-        """A cycle ends, the next begins."""
+        """End a cycle and begin the next."""
         if self._began is not None:
             self.cycles.append(time.perf_counter() - self._began - self._inside)
         super().sleep_until(deadline)
@@ -51,14 +51,14 @@ class TimedBus(EmulatedBus):
 
 
 def own_times(seconds: float, output: Path | None = None) -> list[float]:
-    """The session's own time in each cycle of a run [s]."""
+    """Return the session's own time in each cycle of a run [s]."""
     bus = TimedBus(*devices())
     run(bus, seconds, output)
     return bus.cycles
 
 
 def figures(cycles: list[float]) -> tuple[float, float, float]:
-    """Median, 99th percentile and mean [µs]."""
+    """Return median, 99th percentile and mean [µs]."""
     percentiles = statistics.quantiles(cycles, n=100)
     return 1e6 * statistics.median(cycles), 1e6 * percentiles[98], 1e6 * statistics.fmean(cycles)
 

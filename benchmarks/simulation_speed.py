@@ -1,7 +1,7 @@
 """Simulations per second: ours, alone and in batches, SciPy's `solve_ivp`, a plain Python loop.
 
-Six seconds of the thesis's joint under PD control at 1 kHz, one integration step a period. Medians of runs in turn;
-look at the ratios, single times on a busy machine mean little.
+Six seconds of the thesis's joint under PD control at 1 kHz, one integration step per period. Medians of runs in turn.
+Only the ratios are meaningful, because single times depend on the load of the machine.
 """
 
 import argparse
@@ -20,7 +20,7 @@ TRUTH = {"coulomb": 25.0, "static": 20.0, "stribeck": 100.0, "viscous": 20.0}
 SENSOR = {"sensor_gain": 2.4, "sensor_offset": 15.0}
 MASS, WEIGHT = 2.472e-4 * 101**2 + 0.25, 3.0 * 9.817 * 0.25
 _COLD = "the same, once behind other work"
-_ENOUGH = 0.03  # [s] a peer is called for, each time that it is its turn
+_ENOUGH = 0.03  # [s] for which a peer is called in each of its turns
 STIFFNESS, DAMPING, PERIOD, COUNT = 2e4, 500.0, 1e-3, 6000
 
 PART = Part(
@@ -34,13 +34,13 @@ PART = Part(
 
 
 def friction(v: float) -> float:
-    """Of the truth, with the sign of the velocity and 0 at rest."""
+    """Return the true friction, with the sign of the velocity and 0 at rest."""
     level = TRUTH["coulomb"] + TRUTH["static"] * math.exp(-TRUTH["stribeck"] * v * v)
     return math.copysign(level, v) * (v != 0.0) + TRUTH["viscous"] * v
 
 
 def slope(q: float, v: float, torque: float) -> float:
-    """Acceleration."""
+    """Return the acceleration."""
     return (torque - WEIGHT * math.sin(q) - friction(v)) / MASS
 
 
@@ -83,7 +83,7 @@ def main(runs: int, batch: int, *, write: bool) -> None:
 
     def scipy() -> None:
         state = [0.0, 0.0]
-        for k in range(COUNT // 20):  # a twentieth of the time is enough to know
+        for k in range(COUNT // 20):  # a twentieth of the time suffices
             torque = command(k, *state)
             solved = solve_ivp(
                 lambda _, y, held: (y[1], slope(y[0], y[1], held)),

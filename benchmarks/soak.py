@@ -1,4 +1,4 @@
-"""`make soak`: identify, and run sessions, again and again; nothing must grow, change or be lost."""
+"""`make soak`: repeated identifications and sessions; nothing must grow, change or be lost."""
 
 import argparse
 import sys
@@ -11,11 +11,11 @@ import jointid as jid
 
 
 def soak_identification(minutes: float) -> bool:
-    """Identify the same recording for so long; whether nothing leaks and no result changes."""
+    """Identify the same recording for this time; return whether nothing leaks and no result changes."""
     recording = jid.load(WELL_EXCITED)
     options = jid.GaOptions(generations=20)
     first = jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options)).penalty
-    for _ in range(20):  # allocators settle
+    for _ in range(20):  # until the allocators are stable
         jid.identify(recording, jid.thesis_joint(), search=jid.Search(ga=options))
     before = resident(), count("task"), count("fd")
     ends = time.monotonic() + 60.0 * minutes
@@ -36,7 +36,7 @@ def soak_identification(minutes: float) -> bool:
 
 
 def main() -> int:
-    """Run both; returns 1 when something is not sound."""
+    """Run both; return 1 if something is not sound."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--minutes", type=float, default=5.0, help="of identification")
     parser.add_argument("--emulated-minutes", type=float, default=30.0, help="of sessions")

@@ -1,6 +1,6 @@
-"""`make bench`: who finds the optimum how fast, on one recording and one penalty; writes its parts of the page.
+"""`make bench`: times to the optimum on one recording and one penalty; writes its parts of the page.
 
-Results go to build/bench as JSON lines first: an interrupted run continues where it stopped.
+Results first go to build/bench as JSON lines, so that an interrupted run continues where it stopped.
 """
 
 from __future__ import annotations
@@ -24,12 +24,12 @@ from store import Store
 
 ROOT = Path(__file__).resolve().parents[1]
 WORK = ROOT / "build" / "bench"
-ASIDE = 5.0  # minutes of the budget that scaling and the rest may take
+ASIDE = 5.0  # minutes of the budget for scaling and the rest
 QUICK_LARGEST = 600_000  # samples
 
 
 def main(*, budget: float, quick: bool) -> None:
-    """All of it."""
+    """Run everything."""
     warnings.filterwarnings("ignore")  # the libraries' own
     began = time.perf_counter()
     seeds = 3 if quick else SEEDS

@@ -10,7 +10,7 @@ Record = dict[str, Any]
 
 
 class Store:
-    """Records of one run of the benchmark; a finished run, or one with other settings, starts again."""
+    """Records of one run of the benchmark. A finished run, or other settings, start a new store."""
 
     def __init__(self, path: Path, settings: Record) -> None:
         self.path = path
@@ -29,13 +29,13 @@ class Store:
             self.append(header)
 
     def append(self, record: Record) -> None:
-        """Keep one, on disk first."""
+        """Append a record, on disk first."""
         with self.path.open("a") as file:
             file.write(json.dumps(record) + "\n")
         self.records.append(record)
 
     def of(self, kind: str, **fields: Any) -> list[Record]:
-        """Records of a kind whose fields have these values."""
+        """Return the records of a kind with these field values."""
         return [
             record
             for record in self.records

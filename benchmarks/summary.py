@@ -1,4 +1,4 @@
-"""What the records say: medians of rows, and whether each required figure holds."""
+"""Results of the records: medians of rows, and whether each required figure holds."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ DEFAULT = "jointid `identify()`, default windows | compressed"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """A peer's runs. `seconds` is their median; `bound` says that it is at least that long.
+    """A peer's runs. `seconds` is their median; with `bound`, the median is at least that long.
 
-    Runs that did not reach the target count with the time after which they were given up.
+    Runs that did not reach the target count with the time at which they were stopped.
     """
 
     key: str
@@ -35,17 +35,17 @@ class Row:
 
     @property
     def name(self) -> str:
-        """Without the form."""
+        """Name without the form."""
         return self.key.split(" | ")[0]
 
     @property
     def form(self) -> str:
-        """The penalty it was given."""
+        """Form of its penalty."""
         return self.key.split(" | ")[1]
 
 
 def rows(store: Store, order: list[str]) -> list[Row]:
-    """One a peer, in the table's order."""
+    """Return one row per peer, in the table's order."""
     found = []
     for key in order:
         runs = store.of("run", peer=key)
@@ -75,7 +75,7 @@ def rows(store: Store, order: list[str]) -> list[Row]:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What was measured, and whether it suffices; None: the limit of a run was too short to decide."""
+    """Measured value, and whether it suffices; None: the limit of a run was too short to decide."""
 
     measured: str
     holds: bool | None
@@ -83,7 +83,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Claim:
-    """A wish and its verdict."""
+    """A requirement and its verdict."""
 
     wish: str
     verdict: Verdict
@@ -91,9 +91,9 @@ class Claim:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RatioClaim:
-    """How many times as fast as a group of peers, for the search alone and for the whole call.
+    """Ratio of speed to a group of peers, for only the search and for the whole call.
 
-    `seconds` is the time of the group's quickest peer, `wanted` what it is to be divided by.
+    `seconds` is the time of the group's quickest peer, `wanted` the required ratio.
     """
 
     group: str
@@ -105,7 +105,7 @@ class RatioClaim:
 
 
 def ratio_claims(found: list[Row]) -> list[RatioClaim]:
-    """To the same penalty: the slowest-to-beat row of each group."""
+    """Return the ratios to the same penalty, against the quickest row of each group."""
     by_key = {row.key: row for row in found}
     ours, whole = by_key[OURS].seconds, by_key[OURS_WHOLE].seconds
 
@@ -184,7 +184,7 @@ def _ratio(theirs: Row, ours: float, wanted: float) -> Verdict:
 
 
 def _from_good_start(found: list[Row]) -> Claim:
-    """Local searches from the same starts, on the same compiled residual and Jacobian."""
+    """Compare local searches from the same starts, on the same compiled residual and Jacobian."""
     ours, theirs = (
         next(
             r
@@ -205,7 +205,7 @@ def _at_most(wish: str, value: float, limit: float, measured: str) -> Claim:
 
 
 def claims(store: Store, order: list[str]) -> list[Claim]:
-    """All other wishes that this run can judge."""
+    """Return all other requirements that this run can judge."""
     found = rows(store, order)
     by_key = {row.key: row for row in found}
     candidate = {record["name"]: record["seconds"] for record in store.of("candidate")}
@@ -229,7 +229,7 @@ def claims(store: Store, order: list[str]) -> list[Claim]:
 
 
 def _growth(store: Store) -> list[Claim]:
-    """The search's times over the recording's length."""
+    """Compare the search's times over the recording's length."""
     records = store.of("scaling", over="samples")
     if not records:
         return []
@@ -254,7 +254,7 @@ def _growth(store: Store) -> list[Claim]:
 
 
 def _presets(candidate: dict[str, float], literal: float) -> list[Claim]:
-    """The thesis's budget by both presets, against the transcription of its listing."""
+    """Compare the thesis's budget by both presets with the transcription of its listing."""
     result = []
     for name, key in (("`thesis()`", THESIS), ("`thesis_code()`", THESIS_CODE)):
         total = candidate[key] * 200 * 1501

@@ -1,10 +1,10 @@
-"""Is a node on a CAN bus what CiA 301 asks for? Asked with `canopen`, which knows nothing of this project.
+"""Check whether a node on a CAN bus follows CiA 301, with `canopen`, which knows nothing of this project.
 
     python tools/canopen_conformance.py --emulate                              # the emulated Elmo drive
     python tools/canopen_conformance.py --interface socketcan --channel can0   # a real one, its motor off
 
 Nothing moves: the motor stays off, and the node's communication is reset before and after. Prints a line for
-each check and ends with 0 when all passed, 1 when one failed. What is Elmo's own is left out with --plain.
+each check and ends with 0 when all passed, 1 when one failed. --plain leaves out the checks of Elmo's own objects.
 """
 
 from __future__ import annotations
@@ -24,14 +24,14 @@ import can
 import canopen
 
 PATIENCE = 5.0  # [s] for an answer: the machine may be busy, a node is not
-MASTER = 0x55  # a node of nobody's, whose heartbeat is awaited and stays away
+MASTER = 0x55  # a node that does not exist; its heartbeat is awaited and stays away
 POSITION, TORQUE = 0x60640020, 0x60770010
 Check = Callable[["Node"], Iterator["Finding"]]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Finding:
-    """What one check found."""
+    """Result of one check."""
 
     name: str
     passed: bool
@@ -39,7 +39,7 @@ class Finding:
 
 
 def _dictionary() -> canopen.ObjectDictionary:
-    """What `canopen` must know of the fourth PDO and of two objects, to map them by itself."""
+    """Return the description of the fourth PDO and of two objects that `canopen` needs to map them."""
     found = canopen.ObjectDictionary()  # type: ignore[no-untyped-call]
     kinds = canopen.objectdictionary
     wide, short, byte = kinds.UNSIGNED32, kinds.UNSIGNED16, kinds.UNSIGNED8
@@ -62,7 +62,7 @@ def _dictionary() -> canopen.ObjectDictionary:
 
 
 class Node:
-    """The node that is asked, and what it sends."""
+    """The tested node, and its frames."""
 
     def __init__(self, network: canopen.Network, number: int) -> None:
         self.network, self.number = network, number
@@ -82,7 +82,7 @@ class Node:
         self.network.subscribe(identifier, keep)
 
     def next(self, identifier: int, where: Callable[[bytes], bool] = bool) -> bytes:
-        """Return the next frame with an identifier that is wanted; empty when there is none in time."""
+        """Return the next frame with the wanted identifier; empty if none arrives in time."""
         end = time.monotonic() + PATIENCE
         with contextlib.suppress(queue.Empty):
             while (left := end - time.monotonic()) > 0.0:
@@ -92,11 +92,11 @@ class Node:
         return b""
 
     def waiting(self, identifier: int) -> int:
-        """How many frames with an identifier have come and were not looked at."""
+        """Return the number of frames with an identifier that arrived and were not read."""
         return self._frames[identifier].qsize()
 
     def forget(self, identifier: int) -> None:
-        """Look at none of the frames that have come."""
+        """Discard all frames that have arrived."""
         while self.waiting(identifier):
             self._frames[identifier].get()
 
@@ -128,7 +128,7 @@ class Node:
         self.remote.sdo.download(index, subindex, content, force_segment=segmented)
 
     def abort(self, act: Callable[[], object]) -> int:
-        """Return the code by which something is aborted; 0 when it is not."""
+        """Return the code by which a transfer is aborted; 0 if it is not."""
         try:
             act()
         except canopen.SdoAbortedError as error:
@@ -137,7 +137,7 @@ class Node:
 
 
 def mandatory(node: Node) -> Iterator[Finding]:
-    """Objects of CiA 301 that every device has, or that a watchdog needs, with their sizes."""
+    """Check the objects of CiA 301 that every device has, or that a watchdog needs, with their sizes."""
     sizes = {
         (0x1000, 0): 4,
         (0x1001, 0): 1,
@@ -177,7 +177,7 @@ def mandatory(node: Node) -> Iterator[Finding]:
 
 
 def texts(node: Node) -> Iterator[Finding]:
-    """Texts come in segments."""
+    """Check that texts come in segments."""
     for index in (0x1008, 0x100A):
         found = node.read(index)
         passed = len(found) > 4 and found.isascii() and found.decode("ascii").isprintable()
@@ -185,7 +185,7 @@ def texts(node: Node) -> Iterator[Finding]:
 
 
 def aborts(node: Node) -> Iterator[Finding]:
-    """What cannot be read or written is aborted, with the code that says why."""
+    """Check that invalid reads and writes are aborted, with the code of the reason."""
     for name, act, codes in (
         ("no object, read", lambda: node.read(0x5FFF), {0x06020000}),
         ("no object, written", lambda: node.write(0x5FFF, 0, bytes(4)), {0x06020000}),
@@ -215,7 +215,7 @@ def aborts(node: Node) -> Iterator[Finding]:
 
 
 def segments(node: Node) -> Iterator[Finding]:
-    """Writing in segments; a transfer that goes wrong ends, and the next one is not hurt."""
+    """Check writing in segments: a transfer that goes wrong ends, and the next one is not disturbed."""
     node.write(0x1017, 0, struct.pack("<H", 700), segmented=True)
     yield equal("written in segments", node.number_of(0x1017), 700)
     node.ask(b"\x21\x17\x10\x00\x02\x00\x00\x00")
@@ -230,7 +230,7 @@ def segments(node: Node) -> Iterator[Finding]:
 
 
 def mapping(node: Node) -> Iterator[Finding]:
-    """The rules of mapping: off, count 0, entries, count, on."""
+    """Check the rules of mapping: off, count 0, entries, count, on."""
     cob, entry = 0x480 + node.number, struct.Struct("<I")
     off, on = entry.pack(0xC0000000 | cob), entry.pack(0x40000000 | cob)
     node.write(0x1803, 1, off)
@@ -276,11 +276,11 @@ def _all_refused(node: Node, acts: list[tuple[str, Callable[[], object]]]) -> It
 
 
 def pdos(node: Node) -> Iterator[Finding]:
-    """The mapped PDO at each SYNC, at each second, by its timer, and not before the node is started."""
+    """Check the mapped PDO: at each SYNC, at each second one, by its timer, and not before the node is started."""
     cob = 0x480 + node.number
     node.listen(cob)
     node.send(0x080, b"")
-    node.read(0x1017)  # whose answer comes behind what a SYNC asks for
+    node.read(0x1017)  # its answer comes after the frames of a SYNC
     yield equal("no PDO before operational", node.waiting(cob), 0)
     node.command(0x01)
     node.send(0x080, b"")
@@ -303,7 +303,7 @@ def pdos(node: Node) -> Iterator[Finding]:
 
 
 def heartbeats(node: Node) -> Iterator[Finding]:
-    """The node's heartbeat names its state; stopped, it answers no SDO."""
+    """Check the heartbeat: it names the node's state. A stopped node answers no SDO."""
     identifier = 0x700 + node.number
     node.write(0x1017, 0, struct.pack("<H", 30))
     for command, state in ((0x01, 0x05), (0x80, 0x7F), (0x02, 0x04)):
@@ -314,7 +314,7 @@ def heartbeats(node: Node) -> Iterator[Finding]:
     node.forget(answers)
     node.send(0x600 + node.number, b"\x40\x17\x10\x00" + bytes(4))
     node.forget(identifier)
-    node.next(identifier)  # by then it would have answered
+    node.next(identifier)  # by then the node would have answered
     yield equal("no SDO while it is stopped", node.waiting(answers), 0)
     node.send(0, bytes((0x01, node.number ^ 0x7F or 1)))
     node.forget(identifier)
@@ -324,13 +324,15 @@ def heartbeats(node: Node) -> Iterator[Finding]:
 
 
 def emergencies(node: Node) -> Iterator[Finding]:
-    """A heartbeat that stays away is an emergency; when it comes back, the emergency is taken back."""
+    """Check that a missing heartbeat is an emergency, and that the emergency is cleared when it returns."""
     identifier, beat = 0x080 + node.number, (0x700 + MASTER, b"\x05")
     node.listen(identifier)
     with contextlib.suppress(canopen.SdoAbortedError):
-        node.write(0x2F21, 0, struct.pack("<H", 0x188))  # Elmo sends those that it is told to
+        node.write(
+            0x2F21, 0, struct.pack("<H", 0x188)
+        )  # Elmo sends only the emergencies that are enabled
     with contextlib.suppress(canopen.SdoAbortedError):
-        node.write(0x6007, 0, bytes(2))  # the motor is off, and no failure is to remain
+        node.write(0x6007, 0, bytes(2))  # the motor is off, and no failure may remain
     node.write(0x1016, 1, struct.pack("<HBB", 100, MASTER, 0))
     node.send(*beat)
     found = node.next(identifier)
@@ -347,7 +349,7 @@ def emergencies(node: Node) -> Iterator[Finding]:
 
 
 def elmo(node: Node) -> Iterator[Finding]:
-    """Elmo's interpreters: binary by PDO and by SDO, text by SDO."""
+    """Check Elmo's interpreters: binary by PDO and by SDO, text by SDO."""
     reply = 0x280 + node.number
     node.listen(reply)
     node.command(0x01)
@@ -375,7 +377,7 @@ CHECKS: tuple[Check, ...] = (
 
 
 def equal(name: str, found: Any, wanted: Any, code: int | None = None) -> Finding:
-    """Compare; with a code, an SDO's answer: its first byte and its abort code."""
+    """Compare an answer. With a code, compare an SDO's answer: its first byte and its abort code."""
     if code is not None:
         passed = found[:1] == wanted and found[4:8] == struct.pack("<I", code)
         return Finding(name=name, passed=passed, said=found.hex() or "no answer")
@@ -384,7 +386,7 @@ def equal(name: str, found: Any, wanted: Any, code: int | None = None) -> Findin
 
 
 def findings(network: canopen.Network, number: int, *, plain: bool = False) -> Iterator[Finding]:
-    """Ask a node everything, and yield what is found."""
+    """Run all checks on a node, and yield their results."""
     node = Node(network, number)
     node.listen(0x580 + number)
     node.listen(0x700 + number)
@@ -402,7 +404,7 @@ def findings(network: canopen.Network, number: int, *, plain: bool = False) -> I
 
 @contextlib.contextmanager
 def emulated() -> Iterator[tuple[str, str]]:
-    """An emulated drive on a virtual bus, in a thread; interface and channel."""
+    """Run an emulated drive on a virtual bus, in a thread; yield interface and channel."""
     import jointid as jid
     from jointid.hardware import EmulatorThread
     from jointid.hardware.elmo import EmulatedElmo
@@ -419,16 +421,20 @@ def emulated() -> Iterator[tuple[str, str]]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Read the command line, ask the node, print what is found."""
+    """Read the command line, test the node, print the results."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--emulate", action="store_true", help="the emulated drive, on no real bus")
+    parser.add_argument(
+        "--emulate", action="store_true", help="test the emulated drive, without a real bus"
+    )
     parser.add_argument("--interface", default="socketcan")
     parser.add_argument("--channel", default="can0")
     parser.add_argument("--bitrate", type=int, default=500_000)
     parser.add_argument("--node", type=int, default=127)
-    parser.add_argument("--plain", action="store_true", help="without what is Elmo's own")
+    parser.add_argument(
+        "--plain", action="store_true", help="skip the checks of Elmo's own objects"
+    )
     given = parser.parse_args(arguments)
     failed = total = 0
     with contextlib.ExitStack() as opened:

@@ -1,4 +1,4 @@
-"""Prints pip constraints: the oldest versions that pyproject.toml allows, or none but its own upper limits.
+"""Print pip constraints: the oldest versions that pyproject.toml allows, or only its own upper limits.
 
 Usage: python tools/constraints.py --bound oldest
 """
@@ -13,7 +13,7 @@ _OLDEST = re.compile(r"^([A-Za-z0-9_.-]+)>=([0-9.]+)")
 
 
 def oldest(project: Path = _PROJECT) -> list[str]:
-    """Return ``name==version`` of each dependency, also optional ones, at its lower limit.
+    """Return ``name==version`` of each dependency at its lower limit, optional ones included.
 
     Parameters
     ----------

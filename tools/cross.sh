@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Compiles every file of the core for Windows and for macOS, by zig's clang. Nothing is linked and nothing runs: it shows
-# what another system's headers or compiler refuse. By hand and at releases.
+# Compiles every file of the core for Windows and for macOS, by zig's clang. Nothing is linked and nothing runs. It
+# shows code that another system's headers or compiler refuse. For use by hand and at releases.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 zig=0.17.1  # as in tools/wheels.sh
@@ -19,7 +19,7 @@ files="$(find cpp -name '*.cpp' -not -path 'cpp/bind/*' -not -path 'cpp/tests/*'
 for target in x86_64-windows-gnu aarch64-macos; do
   echo "$target: $(wc -l <<<"$files") files"
   xargs -n 1 dirname <<<"$files" | sort -u | sed "s|^|$here/$target/|" | xargs mkdir -p
-  # Each file by itself, so that the first error does not hide the others.
+  # Each file separately, so that the first error does not hide the others.
   xargs -P "$(getconf _NPROCESSORS_ONLN)" -I '{}' "$python" -m ziglang c++ -target "$target" -std=c++20 \
     -ffp-contract=off -fno-math-errno -fno-trapping-math -O0 -g0 -fno-sanitize=undefined -Icpp -isystem "$eigen" \
     -c '{}' -o "$here/$target/{}.o" <<<"$files" ||

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Fuzzes all readers with the core under ASan and UBSan: what either finds is a failure. Arguments: those of
-# `python -m fuzz` (tests/fuzz/__main__.py). First come hostile values at every place of what is read back.
-# The extension is built beside the core's checks, in build/checks-address, and laid over the package's Python files.
-# Debian's Python is not instrumented itself, so the sanitizers' libraries are loaded before it. gcc only.
+# Fuzzes all readers with the core under ASan and UBSan: any report of theirs is a failure. Arguments: those of
+# `python -m fuzz` (tests/fuzz/__main__.py). Hostile values in every place of the written files come first.
+# The extension is built next to the core's checks, in build/checks-address, and combined with the package's Python
+# files. Debian's Python is not instrumented, so the sanitizers' libraries are loaded before it. gcc only.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=build/checks-address
@@ -32,8 +32,8 @@ preloaded=""
 for library in libasan.so libubsan.so libstdc++.so; do
   preloaded="$preloaded $(readlink -f "$(g++ -print-file-name="$library")")"
 done
-# Leaks: Python keeps what it allocates. What is too large to allocate is an ordinary MemoryError.
-# What was freed is kept back for some cases, not for 256 MB of them: fresh pages take a tenth to a fifth of the time.
+# Leaks are not reported, because Python keeps its memory. Too large an allocation is an ordinary MemoryError.
+# Freed memory is kept back for some cases, not for 256 MB: fresh pages take a tenth to a fifth of the time.
 export ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1:strict_string_checks=1:quarantine_size_mb=16
 export UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1
 export PYTHONPATH="$site"

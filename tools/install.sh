@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs jointid into .venv: install.sh [checks | WHEEL [only]]. `only`: nothing is compiled where the wheel does not fit.
-# Without a wheel it is compiled in build/package, which stays: later only what has changed. `checks`: the core's checks,
-# too. After `make develop` (.venv/.editable) the Python files are used in place.
+# Installs jointid into .venv: install.sh [checks | WHEEL [only]]. `only`: compiles nothing if the wheel does not fit.
+# Without a wheel it is compiled in build/package, which stays, so that later only changes are compiled. `checks` also
+# builds the core's checks. After `make develop` (.venv/.editable) the Python files are used in place.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 compiling="about 3 minutes on 2 cores"  # the first time
@@ -10,7 +10,7 @@ log=build/install.log
 tools="$PWD/build/tools"
 quiet_pip() { "$python" -m pip "$1" --quiet --no-input --disable-pip-version-check "${@:2}"; }
 
-# progress: of what pip says of a build, how many files are compiled, and the compiler's warnings.
+# progress: shows, from pip's output of a build, the number of compiled files and the compiler's warnings.
 progress() {
   local line shown=0
   while IFS= read -r line; do
@@ -43,7 +43,7 @@ fi
 case "${1:-}" in
 *.whl)
   echo "Installing $1"
-  quiet_pip uninstall --yes jointid 2>/dev/null  # its version does not tell that it is another
+  quiet_pip uninstall --yes jointid 2>/dev/null  # its version does not show that it differs
   rm -f .venv/.editable .venv/.tested .venv/.installed
   quiet_pip install --no-compile "$1"
   ;;
@@ -58,7 +58,7 @@ case "${1:-}" in
   [ "${1:-}" != checks ] || options+=(-Ccmake.define.JOINTID_BUILD_CHECKS=ON)
   options+=("-Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=$([ "${CI:-}" = true ] && echo ON || echo OFF)")
   [ ! -e .venv/.editable ] || options+=(--editable)
-  # What builds is found before .venv's own, and only here: pip would take it for installed.
+  # The build tools come before .venv's own packages, and only here: pip would take them for installed.
   PATH="$tools/bin:$PATH" PYTHONPATH="$tools" "$python" -m pip install -v --no-input --disable-pip-version-check \
     --no-compile "${options[@]}" . 2>&1 | tee "$log" | progress ||
     { cat "$log"; echo "jointid could not be built; what the compiler said stands above" >&2; exit 1; }

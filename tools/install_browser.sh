@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what the tests of pages in a browser need: Chromium and its driver. On Debian and its like, as root or with sudo.
+# Installs Chromium and its driver for the tests of pages in a browser. On Debian-like systems, as root or with sudo.
 set -euo pipefail
 
 present() { command -v chromium >/dev/null && command -v chromedriver >/dev/null; }

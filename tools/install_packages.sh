@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs packages of the system that some tests need: install_packages.sh WHO_NEEDS_THEM PACKAGE ...
-# On Debian and its like, as root or with sudo.
+# Installs system packages that some tests need: install_packages.sh WHO_NEEDS_THEM PACKAGE ...
+# On Debian-like systems, as root or with sudo.
 set -euo pipefail
 who="$1"
 shift

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what tests/canlab needs: User Mode Linux with its CAN modules. On Debian and its like, as root or with sudo.
+# Installs User Mode Linux with its CAN modules for tests/canlab. On Debian-like systems, as root or with sudo.
 set -euo pipefail
 
 present() {

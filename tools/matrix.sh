@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# jointid on Debian 13 (Python 3.13, gcc 14, clang 19) in a folder of its own, by chroot; and with the oldest and the
-# newest dependencies that pyproject.toml allows, here. By hand, as root, on Debian or its like; the better part of an
-# hour on two cores, and 3 GB in build/matrix. Arguments: the parts to run, by default all.
+# Tests jointid on Debian 13 (Python 3.13, gcc 14, clang 19) in its own folder, by chroot, and on this system with the
+# oldest and the newest dependencies that pyproject.toml allows. By hand, as root, on a Debian-like system. Takes almost
+# an hour on two cores, and 3 GB in build/matrix. Arguments: the parts to run, by default all.
 #   root       debootstrap Debian 13 into build/matrix/trixie, unless it is there
 #   compilers  all of cpp/ with gcc 14 and clang 19, warnings are errors, and the core's checks of each
 #   trixie     the package built there by gcc 14, the demo, the tests
@@ -18,18 +18,18 @@ mkdir -p "$here"
 
 fail() { echo "matrix.sh: $1" >&2; exit 1; }
 
-# inside COMMAND...: in the root, in a copy of this checkout.
+# inside COMMAND...: runs it in the root, in a copy of this checkout.
 inside() {
   chroot "$root" /usr/bin/env -i HOME=/root PATH=/usr/bin:/bin:/usr/sbin:/sbin LANG=C.UTF-8 \
     OPENBLAS_NUM_THREADS=1 bash -o pipefail -c "cd /jointid && $*"
 }
 
-# enter: with the files of the system that programs expect, until this script ends.
+# enter: mounts the system files that programs expect, until this script ends.
 enter() {
   [ -e "$root/.made" ] || fail "there is no root yet: run the part root"
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
   mountpoint -q "$root/dev" || mount --bind /dev "$root/dev"
-  local each  # what is mounted on /dev does not come with it: shared memory, terminals
+  local each  # mounts inside /dev are not included: shared memory, terminals
   for each in shm pts; do mountpoint -q "$root/dev/$each" || mount --bind "/dev/$each" "$root/dev/$each"; done
   trap 'umount -l "$root/dev/shm" "$root/dev/pts" "$root/dev" "$root/proc" 2>/dev/null || true' EXIT
 }
@@ -38,7 +38,7 @@ part_root() {
   [ "$(id -u)" = 0 ] || fail "only root may make and enter a root"
   command -v debootstrap >/dev/null || fail "debootstrap is not installed: apt-get install debootstrap"
   [ -e "$root/.made" ] || { rm -rf "$root"; debootstrap --variant=minbase --include="$packages" trixie "$root" >"$here/root.log" && touch "$root/.made"; }
-  # It reaches what this machine reaches, and trusts whom this machine trusts.
+  # The root has the network and the certificates of this machine.
   cp -L /etc/resolv.conf "$root/etc/"
   cp -L /etc/ssl/certs/ca-certificates.crt "$root/etc/ssl/certs/"
   enter
@@ -51,8 +51,8 @@ part_root() {
   inside '/venv/bin/python -m pip install --quiet --no-input --group build'
 }
 
-# strictly COMPILER BIN FOLDER: the command that compiles all of cpp/ into a wheel and the core's checks, and runs these.
-# A folder for each compiler: CMake stays with the one it found first.
+# strictly COMPILER BIN FOLDER: the command that compiles all of cpp/ into a wheel and the core's checks, and runs them.
+# One folder per compiler, because CMake keeps the first one that it finds.
 strictly() {
   echo "PATH=$2:\$PATH CXX=$1 python -m pip wheel --quiet --no-input --no-deps --no-build-isolation -Cbuild-dir=$3/$1 \
     -Ccmake.define.JOINTID_BUILD_CHECKS=ON -Ccmake.define.JOINTID_WARNINGS_AS_ERRORS=ON \
@@ -85,8 +85,8 @@ part_trixie() {
   inside '/venv/bin/python -m pytest -q --numprocesses auto --dist loadfile'
 }
 
-# bound NAME: here, in an environment of its own. Without pinocchio, whose oldest version needs a newer NumPy than we do,
-# and without the tools of the other tests, whose limits are not ours: what needs them is skipped.
+# bound NAME: on this system, in its own environment. Without pinocchio, because its oldest version needs a newer NumPy
+# than jointid, and without the tools of the other tests, which have other limits: tests that need them are skipped.
 bound() {
   local environment="$here/$1" python
   python="$environment/bin/python"

@@ -1,4 +1,4 @@
-"""docs/contributors/measured.md, the page of measured results: each study writes its own parts of it."""
+"""The page of measured results, docs/contributors/measured.md: each study writes its own parts of it."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ PAGE = ROOT / "docs" / "contributors" / "measured.md"
 
 @dataclass(frozen=True, kw_only=True)
 class Part:
-    """One heading of the page with its table; names in braces are facts of the run.
+    """One heading of the page with its table. Names in braces are facts of the run.
 
     Attributes
     ----------
     title : str
         The heading. The part reaches to the next one.
     asked : str
-        What was asked, above the table.
+        The question, above the table.
     header : tuple of str
         The table's columns; empty: there is no table.
     reading : str
-        Below the table.
+        The explanation below the table.
     """
 
     title: str
@@ -36,7 +36,7 @@ class Part:
     reading: str = ""
 
     def text(self, rows: Iterable[Sequence[object]], when: str = "", **facts: object) -> str:
-        """Return the part; `when` is what its figures are of."""
+        """Return the part; `when` is the date and version of its figures."""
         asked = self.asked.format(**facts) + (f" *{when}*" if when else "")
         blocks = [f"### {self.title}", _filled(asked)]
         if self.header:
@@ -51,13 +51,13 @@ def _filled(text: str) -> str:
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
-    """Return a table in Markdown; each row has a cell for each column."""
+    """Return a table in Markdown; each row has one cell per column."""
     head, *lines = (f"| {' | '.join(map(str, row))} |" for row in _even(header, rows))
     return "\n".join([head, f"|{'---|' * len(header)}", *lines])
 
 
 def _even(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[Sequence[object]]:
-    """The header, and the rows, each as long as it."""
+    """Return the header, and the rows padded to its length."""
     yield header
     for row in rows:
         if len(row) != len(header):
@@ -66,7 +66,7 @@ def _even(header: Sequence[str], rows: Iterable[Sequence[object]]) -> Iterator[S
 
 
 def placed(page: str, text: str) -> str:
-    """Return the page with a part in the place of the one with its heading."""
+    """Return the page with a part in place of the one with the same heading."""
     heading = text.partition("\n")[0]
     old = re.compile(rf"^{re.escape(heading)}\n.*?(?=^##|\Z)", re.DOTALL | re.MULTILINE)
     new, count = old.subn(lambda _: text + "\n", page)
@@ -76,7 +76,7 @@ def placed(page: str, text: str) -> str:
 
 
 def publish(part: Part, rows: Iterable[Sequence[object]], *, write: bool, **facts: object) -> None:
-    """Print a part; write it into the page, too, where that is wanted."""
+    """Print a part, and write it into the page if requested."""
     text = part.text(rows, f"{datetime.date.today()}, commit {commit()}", **facts)
     print(text, flush=True)
     if write:
@@ -84,12 +84,12 @@ def publish(part: Part, rows: Iterable[Sequence[object]], *, write: bool, **fact
 
 
 def write_part(text: str) -> None:
-    """Put a part into the page."""
+    """Write a part into the page."""
     PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), text), encoding="utf-8")
 
 
 def commit() -> str:
-    """Return the checkout's, "-dirty" if files but the page differ from it; "unknown" outside of one."""
+    """Return the commit, with "-dirty" if files other than the page differ from it; "unknown" without a repository."""
     others = ("--", ".", f":(exclude){PAGE.relative_to(ROOT).as_posix()}")
     try:
         short = _git("rev-parse", "--short=8", "HEAD")

@@ -1,4 +1,4 @@
-"""Run the notebooks from top to bottom and keep what they show; with names, only those."""
+"""Run the notebooks from top to bottom and keep their outputs; with names, only those notebooks."""
 
 import argparse
 import os
@@ -13,7 +13,7 @@ FOLDER = Path(__file__).resolve().parents[1] / "notebooks"
 
 
 def run(path: Path) -> None:
-    """Execute one notebook and write it back, without the traces of this machine."""
+    """Execute one notebook and write it back, without traces of this machine."""
     before: Any = nbformat.read(path, as_version=4)  # type: ignore[no-untyped-call]
     notebook: Any = nbformat.read(path, as_version=4)  # type: ignore[no-untyped-call]
     NotebookClient(
@@ -33,7 +33,7 @@ def run(path: Path) -> None:
 
 
 def main() -> None:
-    """Run what is asked for."""
+    """Run the requested notebooks."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("names", nargs="*", help="such as 01; default: all")
     names = parser.parse_args().names

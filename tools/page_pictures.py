@@ -1,4 +1,4 @@
-"""Take the pictures of reports that docs/reports.md shows, in a browser: `make browser` installs it."""
+"""Take the pictures of reports for docs/reports.md, in a browser: `make browser` installs it."""
 
 import sys
 from collections.abc import Callable
@@ -14,7 +14,7 @@ from browser import browser, missing  # noqa: E402
 from report_pages import Shown, of_a_comparison, of_a_joint, of_a_session, page  # noqa: E402
 
 FOLDER = ROOT / "docs" / "pictures"
-# By the file's name: the page, its width and height in pixels, and the ground.
+# By the file's name: the page, its width and height in pixels, and the background.
 SHOTS: dict[str, tuple[Callable[[], Shown], int, int, str]] = {
     "report_of_a_joint.png": (of_a_joint, 800, 1180, "light"),
     "report_of_a_comparison.png": (of_a_comparison, 390, 760, "dark"),
@@ -23,7 +23,7 @@ SHOTS: dict[str, tuple[Callable[[], Shown], int, int, str]] = {
 
 
 def main() -> None:
-    """Take and save them."""
+    """Take the pictures and save them."""
     if lacking := missing():
         sys.exit(lacking)
     with TemporaryDirectory() as folder, browser(Path(folder)) as shown:

@@ -1,4 +1,4 @@
-"""Draw the picture that README.md shows, from the recordings that ship with the package, and keep its numbers."""
+"""Draw the picture of README.md from the recordings that ship with the package, and keep its numbers."""
 
 import json
 from pathlib import Path
@@ -18,7 +18,7 @@ SIMULATED = ROOT / "examples" / "data" / "well_excited.csv.gz"
 
 
 def estimates() -> dict[str, jid.Estimate]:
-    """Return the estimates that are drawn, by the titles of their maps."""
+    """Return the drawn estimates by the titles of their maps."""
     kuka = jid.demo()
     return {
         "KUKA KR300, joint 1 (measured)": jid.identify(kuka.recording, kuka.joint),
@@ -35,7 +35,7 @@ def numbers(estimate: jid.Estimate) -> list[list[float]]:
 
 
 def main() -> None:
-    """Draw the maps, and write what is drawn."""
+    """Draw the maps, and write the drawn numbers."""
     found = estimates()
     with style():
         figure, axes = pyplot.subplots(1, len(found), figsize=(9.0, 3.6))

@@ -1,6 +1,6 @@
 """Write the stub of a built extension: `python tools/stub.py EXTENSION OUTPUT`. CMake runs it after the link.
 
-Needs pybind11-stubgen, and neither an installed jointid nor NumPy.
+Needs pybind11-stubgen, but neither an installed jointid nor NumPy.
 """
 
 import ast
@@ -14,7 +14,7 @@ from types import ModuleType
 PACKAGE = Path(__file__).resolve().parent.parent / "python" / "jointid" / "__init__.py"
 HEADER = "# Generated from the extension; not to be edited.\n"
 
-# What the generator leaves open or writes against the typing rules: pattern and replacement.
+# Output of the generator that is incomplete or breaks the typing rules: pattern and replacement.
 REWRITES = [
     # An enumeration: members by assignment, no constructor.
     (r"^    (\w+): typing\.ClassVar\[\w+\].*$", r"    \1 = ..."),
@@ -27,7 +27,7 @@ REWRITES = [
 
 
 def load(extension: Path) -> ModuleType:
-    """Import the file as `jointid._core`, whatever else of that name is installed."""
+    """Import the file as `jointid._core`, even if another module of that name is installed."""
     package = ModuleType("jointid")
     package.__path__ = []
     sys.modules["jointid"] = package
@@ -50,7 +50,7 @@ class AnyName(ModuleType):
 
 
 def stand_in_for_numpy() -> None:
-    """Let the generator find the names of NumPy's types: an environment that builds has no NumPy."""
+    """Let the generator find the names of NumPy's types, because a build environment has no NumPy."""
     if importlib.util.find_spec("numpy") is None:
         for name in ("numpy", "numpy.typing"):
             sys.modules[name] = AnyName(name)
@@ -81,7 +81,7 @@ def generate(core: ModuleType) -> str:
 
 
 def public_classes(package: str) -> set[str]:
-    """Return what the package's source, given as text, imports of the extension: its public names."""
+    """Return the names that the package's source, a text, imports from the extension: its public names."""
     return {
         name.name
         for node in ast.walk(ast.parse(package))
@@ -91,7 +91,7 @@ def public_classes(package: str) -> set[str]:
 
 
 def documented(text: str, public: set[str]) -> str:
-    """Keep the docstrings of these classes, which an editor shows; the extension itself has all of them."""
+    """Keep only the docstrings of these classes, which an editor shows; the extension has all docstrings."""
     lines = text.splitlines()
     pending: list[ast.stmt] = list(ast.parse(text).body)
     while pending:
@@ -111,7 +111,7 @@ def documented(text: str, public: set[str]) -> str:
 
 
 def members(found: re.Match[str]) -> str:
-    """Write an enumeration without what Python's own class has: its head and text, and its members."""
+    """Write an enumeration with its head, text and members, without the members of Python's own class."""
     head, text = re.match(r'(.*\n)((?:    """\n(?:    .*\n)*?    """\n)?)', found[0]).groups()  # type: ignore[union-attr]
     names = re.findall(r"^    ([a-z]\w*) = \.\.\.$", found[0], flags=re.MULTILINE)
     return head + text + "".join(f"    {name} = ...\n" for name in names) + "\n"

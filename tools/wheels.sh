@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Wheels for Linux that need no compiler and an old glibc only, without a container: zig's clang, which links against any
-# glibc's symbols, then auditwheel. Arguments: the Pythons to build for; by default the one of .venv. Writes dist/wheels.
-# Each wheel is installed into an environment where no compiler is to be found, and used there; by pip and by uv.
+# Builds wheels for Linux that need no compiler and only an old glibc, without a container: by zig's clang, which links
+# against any glibc's symbols, then auditwheel. Arguments: the Pythons to build for, by default that of .venv. Writes
+# dist/wheels. Each wheel is installed into an environment without a compiler, by pip and by uv, and used there.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 glibc=2.17
 zig=0.17.1  # pinned: 0.14 lacks a symbol of the undefined-behaviour sanitizer; bits may change with the compiler
-flags="-g0 -DJOINTID_ZIG"  # without -g0 zig writes what a debugger needs, twenty times the code
+flags="-g0 -DJOINTID_ZIG"  # without -g0 zig writes debugging data of twenty times the code's size
 machine="$(uname -m)"
 root="$PWD/build/wheels"
 excited="$PWD/examples/data/well_excited.csv.gz"  # not in the wheel
@@ -15,7 +15,7 @@ mkdir -p "$root" dist/wheels
 
 quiet_pip() { "$1" -m pip install --quiet --no-input --disable-pip-version-check "${@:2}"; }
 
-# smoke ENVIRONMENT: what a user would do first; nothing but the environment's programs is on PATH.
+# smoke ENVIRONMENT: the first steps of a user; only the environment's programs are on PATH.
 smoke() {
   local folder
   folder="$(mktemp -d)"
@@ -50,8 +50,8 @@ for python in "$@"; do
   mkdir -p "$here/bin" "$here/raw"
   echo "$tag: building with zig $zig for glibc $glibc"
   tools="$here/tools/bin/python"
-  # Made once: zig compiles its C++ library anew, minutes, for each place and time of its files. The objects of another
-  # compiler or with other flags, of which ninja knows nothing, go with them.
+  # Made once: zig takes minutes to compile its C++ library again for each place and time of its files. Also removes
+  # objects of another compiler or with other flags, which ninja does not detect.
   if [ "$(cat "$here/tools/made" 2>/dev/null)" != "$zig $flags" ]; then
     rm -rf "$here"/{tools,build}
     "$python" -m venv "$here/tools"
@@ -64,7 +64,7 @@ for python in "$@"; do
       "$tools" "$name" "$machine-linux-gnu.$glibc" "$flags" >"$here/bin/$name"
     chmod +x "$here/bin/$name"
   done
-  # CMake looks for clang-scan-deps beside a clang, and there is none: no modules are scanned for.
+  # CMake looks for clang-scan-deps next to a clang. There is none, so modules are not scanned.
   PATH="$here/tools/bin:$PATH" CC="$here/bin/cc" CXX="$here/bin/c++" "$tools" -m pip wheel --quiet --no-input \
     --disable-pip-version-check --no-deps --no-build-isolation -Cbuild-dir="$here/build" \
     -Ccmake.define.CMAKE_CXX_SCAN_FOR_MODULES=OFF --wheel-dir "$here/raw" .

@@ -1,4 +1,4 @@
-"""Whole arms: the classical way to identify one, TX40's log, and how both ways predict what they have not seen."""
+"""Whole arms: the classical method of identification, TX40's log, and the predictions of both methods."""
 
 import sys
 from pathlib import Path

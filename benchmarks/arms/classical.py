@@ -2,7 +2,7 @@
 
 Positions pass a Butterworth filter of 4th order forward and backward; velocity and acceleration are central
 differences; torques pass the decimating filter of the same kind; rows are weighted by their joint's residual;
-the columns that the motion tells apart are found by QR. So do Janot, Vandanjon, Gautier and many others.
+QR finds the columns that the motion separates. Janot, Vandanjon, Gautier and many others use this method.
 Nothing of the package is used.
 """
 
@@ -22,13 +22,13 @@ _LINK = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
 
 @dataclass(frozen=True, kw_only=True)
 class Source:
-    """Where friction and a rotor's inertia arise: their speed is `speed` · v, and they act on each joint by `speed`.
+    """Source of friction and a rotor's inertia: its speed is `speed` · v, and it acts on each joint by `speed`.
 
     Attributes
     ----------
     name : str
     speed : tuple of float
-        One number a joint: 1 for the joint itself; a coupled motor turns with several.
+        One number per joint: 1 for the joint itself; a coupled motor turns with several.
     least : float
         Rows with a smaller speed are left out [rad/s].
     """
@@ -39,7 +39,7 @@ class Source:
 
 
 def joint_sources(joints: int, least: Sequence[float]) -> list[Source]:
-    """One source a joint."""
+    """Return one source per joint."""
     return [
         Source(name=str(j + 1), speed=tuple(float(i == j) for i in range(joints)), least=least[j])
         for j in range(joints)
@@ -48,7 +48,7 @@ def joint_sources(joints: int, least: Sequence[float]) -> list[Source]:
 
 @dataclass(frozen=True)
 class Signals:
-    """Filtered motion at full rate, and the torque as it was measured; (samples, joints)."""
+    """Filtered motion at full rate, and the torque as measured; (samples, joints)."""
 
     time: Array
     position: Array
@@ -58,7 +58,7 @@ class Signals:
 
 
 def filtered(time: Array, position: Array, torque: Array, cutoff: float) -> Signals:
-    """Butterworth of 4th order forward and backward, then central differences; stamps must be even."""
+    """Filter by a Butterworth of 4th order forward and backward, then take central differences; stamps must be even."""
     from scipy.signal import butter, filtfilt
 
     period = float(time[-1] - time[0]) / (len(time) - 1)
@@ -69,7 +69,7 @@ def filtered(time: Array, position: Array, torque: Array, cutoff: float) -> Sign
 
 @dataclass(frozen=True)
 class Rows:
-    """The regressor's rows of some samples, (samples, joints, columns), their torques, and which of them count."""
+    """The regressor's rows of some samples, (samples, joints, columns), their torques, and the mask of used rows."""
 
     columns: Array
     torque: Array
@@ -78,7 +78,7 @@ class Rows:
 
 
 def regressor(model: Any, sources: Sequence[Source], signals: Signals) -> tuple[Array, list[str]]:
-    """All columns: ten a link by pinocchio, then inertia, viscous and Coulomb of a source, and offsets."""
+    """Return all columns: ten per link by pinocchio, inertia, viscous and Coulomb friction per source, and offsets."""
     import pinocchio
 
     state = model.createData()
@@ -106,7 +106,7 @@ def regressor(model: Any, sources: Sequence[Source], signals: Signals) -> tuple[
 
 
 def rows_of(model: Any, sources: Sequence[Source], signals: Signals, every: int) -> Rows:
-    """Each `every`-th sample; the torque is filtered below half of the rate that remains."""
+    """Return each `every`-th sample; the torque is filtered below half of the remaining rate."""
     from scipy.signal import butter, filtfilt
 
     torque = filtfilt(*butter(4, 0.8 / every), signals.torque, axis=0)[::every]
@@ -128,7 +128,7 @@ def rows_of(model: Any, sources: Sequence[Source], signals: Signals, every: int)
 
 @dataclass(frozen=True)
 class Fit:
-    """Values and standard errors of the columns that the rows tell apart; the others are part of them."""
+    """Values and standard errors of the columns that the rows separate; they include the other columns."""
 
     value: dict[str, float]
     error: dict[str, float]
@@ -136,12 +136,12 @@ class Fit:
     beta: Array = field(repr=False)
 
     def torque(self, columns: Array) -> Array:
-        """Predicted torque, (samples, joints)."""
+        """Return the predicted torque, (samples, joints)."""
         return np.asarray(columns[:, :, self.chosen] @ self.beta)
 
 
 def fit(rows: Rows, kept: Mask) -> Fit:
-    """Weighted least squares over the samples `kept`; weights by each joint's residual, three times."""
+    """Fit by weighted least squares over the samples `kept`; weights by each joint's residual, three times."""
     used = rows.used & kept[:, None]
     chosen = _told_apart(rows, used)
     columns = rows.columns[:, :, chosen]
@@ -164,7 +164,7 @@ def fit(rows: Rows, kept: Mask) -> Fit:
 
 
 def _told_apart(rows: Rows, used: Mask) -> NDArray[np.intp]:
-    """Columns of a basis by QR; friction is asked first, so that what else depends is a link's."""
+    """Return columns of a basis by QR; friction comes first, so that dependent columns are those of links."""
     stacked = rows.columns[used]
     size = np.linalg.norm(stacked, axis=0)
     links = sum(name.startswith(_LINK) for name in rows.names)

@@ -1,4 +1,4 @@
-"""What a fit predicts of a part of a motion that it has not seen: integrals of torque over windows."""
+"""Prediction of a held-out part of a motion: integrals of torque over windows."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from arms.classical import Array, Mask
 
 
 def folds(time: Array, begin: float, end: float, number: int) -> Iterator[Mask]:
-    """Samples held out: `number` blocks one after the other."""
+    """Return masks of held-out samples: `number` blocks one after the other."""
     edges = np.linspace(begin, end, number + 1)
     for low, high in itertools.pairwise(edges):
         yield (time >= low) & (time < high)
@@ -28,14 +28,14 @@ class Windows:
 
     @staticmethod
     def of(time: Array, block: Mask, length: float) -> Windows:
-        """Windows side by side; what is left at the block's end is not used."""
+        """Return adjacent windows; the rest at the block's end is not used."""
         inside = np.flatnonzero(block)
         edges = np.arange(time[inside[0]], time[inside[-1]] + 1e-12, length)
         at = np.searchsorted(time, edges - 1e-12)
         return Windows(at[:-1], at[1:])
 
     def integrals(self, time: Array, values: Array) -> Array:
-        """Integrals over the windows by trapezoids, (windows, joints)."""
+        """Return integrals over the windows by the trapezoidal rule, (windows, joints)."""
         steps = 0.5 * (values[1:] + values[:-1]) * np.diff(time)[:, None]
         total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
         return np.asarray(total[self.last] - total[self.first])
@@ -43,14 +43,14 @@ class Windows:
 
 @dataclass(frozen=True)
 class Share:
-    """Residual and size of the windows' torques, gathered over blocks: root of the sum of squares of each joint."""
+    """Sums of squares of the windows' residuals and torques per joint, gathered over blocks."""
 
     residual: Array
     size: Array
 
     @staticmethod
     def gathered(measured: list[Array], predicted: list[Array]) -> Share:
-        """Of windows of several blocks."""
+        """Return the share of windows of several blocks."""
         real, told = np.concatenate(measured), np.concatenate(predicted)
         return Share(
             np.sqrt(((real - told) ** 2).sum(axis=0)),
@@ -59,10 +59,10 @@ class Share:
 
     @property
     def joints(self) -> Array:
-        """Relative residual of each joint."""
+        """Return the relative residual of each joint."""
         return np.asarray(self.residual / self.size)
 
     @property
     def total(self) -> float:
-        """Relative residual of all joints together [of N·m·s]."""
+        """Return the relative residual of all joints together [of N·m·s]."""
         return float(np.linalg.norm(self.residual) / np.linalg.norm(self.size))

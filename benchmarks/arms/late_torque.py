@@ -1,4 +1,4 @@
-"""How often a late torque is found on simulated arms."""
+"""Rate at which a late torque is found on simulated arms."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ PART = Part(
 
 
 def delays(seeds: range) -> Iterator[list[object]]:
-    """A late torque: whether it is named, and what is left of it in the friction."""
+    """Return, for late torques, whether the delay is named, and the remaining error of the friction."""
     runs = [(recorded(ran, Sensors(), seed), ran.arm) for seed, ran in simulated(seeds)]
     modes: tuple[Inertia, Inertia] = ("urdf", "free")
     for delay in DELAYS:
@@ -57,7 +57,7 @@ def delays(seeds: range) -> Iterator[list[object]]:
 
 
 def _lag(estimate: jid.RobotEstimate) -> float | None:
-    """The common delay that was found [s]; of several the first."""
+    """Return the common delay that was found [s]; the first of several."""
     for each in estimate.findings:
         if each.code == "delay_removed":
             return next(iter(each.evidence.values())).value

@@ -18,7 +18,7 @@ _DURATION = 20.0  # [s]
 
 @dataclass(frozen=True, kw_only=True)
 class FaultyLog:
-    """What a call gets, and what is true."""
+    """Arguments of the call, and the true values."""
 
     fault: str  # one of FAULTS, or "clean"
     detail: str
@@ -56,7 +56,7 @@ def faulty_log(seed: int, fault: str) -> FaultyLog:
 
 
 def _recorded(signals: Signals, rng: np.random.Generator, every: int) -> _Log:
-    """What good sensors make of it: counts, noise on the torques, stamps that are a little late."""
+    """Return the recording of good sensors: counts, noise on the torques, stamps that are slightly late."""
     count = 2.0 * np.pi / 2.0 ** rng.integers(17, 21)
     noise = rng.uniform(0.002, 0.008) * np.abs(signals.torque).max(axis=0)
     time = signals.time + rng.exponential(3e-5, signals.time.size)
@@ -106,7 +106,7 @@ def _factors(log: _Log, rng: np.random.Generator) -> _Log:
     if kind == "one torque":
         scales = np.ones(n)
         scales[rng.integers(n)] = np.exp(rng.choice([-1.0, 1.0]) * rng.uniform(0.2, 1.0))
-    if kind == "one ratio":  # that of the first joint is taken for all
+    if kind == "one ratio":  # the ratio of the first joint is used for all
         ratios = rng.uniform(0.4, 1.0, (n,)) * 100.0
         scales = ratios[0] / ratios
     shown = ", ".join(f"{each:.2g}" for each in scales.tolist())

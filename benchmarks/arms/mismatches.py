@@ -1,4 +1,4 @@
-"""The simulated arm with one thing wrong that the call is not told: in signals, in the URDF, in the mounting."""
+"""The simulated arm with one error that the call does not know: in signals, in the URDF, in the mounting."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from jointid.robot.links.inertia_modes import Inertia
 
 @dataclass(frozen=True, kw_only=True)
 class Mismatch:
-    """How the arm, its sensors, or the recording differ from what the call is told."""
+    """Difference of the arm, its sensors, or the recording from the call's arguments."""
 
     name: str
     arm: Callable[[Arm], Arm] = lambda arm: arm
@@ -27,7 +27,7 @@ class Mismatch:
 
 
 def of_body(link: int, mass: float, place: tuple[float, float, float]) -> Callable[[Arm], Arm]:
-    """A body fixed to a link, that the URDF does not know."""
+    """Fix a body to a link, which the URDF does not know."""
 
     def changed(arm: Arm) -> Arm:
         import pinocchio
@@ -41,7 +41,7 @@ def of_body(link: int, mass: float, place: tuple[float, float, float]) -> Callab
 
 
 def moved_centre(link: int, way: tuple[float, float, float]) -> Callable[[Arm], Arm]:
-    """A link's centre of mass elsewhere than the URDF says [m]."""
+    """Move a link's centre of mass from the URDF's place [m]."""
 
     def changed(arm: Arm) -> Arm:
         import pinocchio
@@ -55,7 +55,7 @@ def moved_centre(link: int, way: tuple[float, float, float]) -> Callable[[Arm], 
 
 
 def tilted(degrees: float) -> Callable[[Arm], Arm]:
-    """The base not upright."""
+    """Tilt the base."""
 
     def changed(arm: Arm) -> Arm:
         import pinocchio
@@ -69,7 +69,7 @@ def tilted(degrees: float) -> Callable[[Arm], Arm]:
 
 
 def late(signal: str, delay: float) -> Callable[[jid.RobotRecording], jid.RobotRecording]:
-    """A signal that shows what was true so much before [s]."""
+    """Delay a signal by this time [s]."""
 
     def changed(recording: jid.RobotRecording) -> jid.RobotRecording:
         fields = recording.fields()
@@ -83,7 +83,7 @@ def late(signal: str, delay: float) -> Callable[[jid.RobotRecording], jid.RobotR
 def scaled(
     signals: tuple[str, ...], joint: int, factor: float = 1.0, shift: float = 0.0
 ) -> Callable[[jid.RobotRecording], jid.RobotRecording]:
-    """Signals of one joint times a factor, and moved."""
+    """Multiply signals of one joint by a factor, and shift them."""
 
     def changed(recording: jid.RobotRecording) -> jid.RobotRecording:
         fields = recording.fields()
@@ -97,7 +97,7 @@ def scaled(
 
 
 def thinned(every: int) -> Callable[[jid.RobotRecording], jid.RobotRecording]:
-    """Each so many samples."""
+    """Keep only every n-th sample."""
 
     def changed(recording: jid.RobotRecording) -> jid.RobotRecording:
         fields = recording.fields()
@@ -143,7 +143,7 @@ PART = Part(
 
 
 def table(seeds: range) -> Iterator[list[str]]:
-    """Worst errors over the seeds, and what the calls say."""
+    """Return the worst errors over the seeds, and the findings of the calls."""
     for mismatch in MISMATCHES:
         runs = []
         for seed in seeds:

@@ -1,6 +1,6 @@
-"""What a `RobotEstimate` predicts of any motion, integrated over windows: pinocchio's regressors, not the package's.
+"""Prediction of a `RobotEstimate` for any motion, integrated over windows, with pinocchio's regressors.
 
-Over a window, the integral of torque is the change of momentum, less the integral of Cᵀ v - g, plus friction's.
+Over a window, the integral of torque is the change of momentum minus the integral of Cᵀ v - g, plus friction's.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ _NEAR = 1e-4  # of a velocity, for the change of the inertia along it [s]
 def momentum_and_force(
     model: Any, inertial: Array, position: Array, velocity: Array
 ) -> tuple[Array, Array]:
-    """M v and g - Cᵀ v of links with these inertial parameters (ten a link, as in pinocchio)."""
+    """Return M v and g - Cᵀ v of links with these inertial parameters (ten per link, as in pinocchio)."""
     import pinocchio
 
     state, rest = model.createData(), np.zeros(model.nv)
@@ -49,7 +49,7 @@ def predicted(
     velocity: Array,
     windows: Windows,
 ) -> Array:
-    """Integrals of the predicted torque at the joints, (windows, joints)."""
+    """Return integrals of the predicted torque at the joints, (windows, joints)."""
     momentum, force = momentum_and_force(model, found.inertial.ravel(), position, velocity)
     joints = list(found.joints.values())
     turns = found.robot.couplings

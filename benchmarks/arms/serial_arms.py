@@ -1,6 +1,6 @@
-"""Random serial arms, simulated by pinocchio's dynamics, with friction of any value at standstill.
+"""Random serial arms, simulated by pinocchio's dynamics. At standstill friction takes any value up to its bound.
 
-Nothing of the package's balance is in it.
+The package's balance is not used.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class SerialArm:
 
     @property
     def joints(self) -> int:
-        """Their number."""
+        """Number of joints."""
         return int(self.coulomb.size)
 
 
@@ -60,12 +60,12 @@ def random_arm(rng: np.random.Generator, *, load: bool = False, rise: bool = Fal
     masses = rng.uniform(5.0, 14.0) * np.geomspace(1.0, rng.uniform(0.06, 0.2), n)
     masses *= rng.uniform(0.75, 1.3, n)
     axes = ["z", "y", "y"] + [str(rng.choice(["x", "y", "z"])) for _ in range(n - 3)]
-    for place in range(3, n):  # no axis twice in a row that no gravity tells apart
+    for place in range(3, n):  # no axis twice in a row if gravity cannot separate the two
         if axes[place] == axes[place - 1] == "z":
             axes[place] = "y"
     below = np.cumsum(masses[::-1])[::-1]
     arms = np.cumsum(lengths[::-1])[::-1]
-    weight = 9.81 * below * 0.4 * arms  # about what gravity asks of a joint
+    weight = 9.81 * below * 0.4 * arms  # about the gravity torque of the joint
     coulomb = weight * rng.uniform(0.1, 0.35, n) + 0.15
     viscous = coulomb * rng.uniform(0.5, 1.5, n)
     rotor = 0.4 * below * (0.4 * arms) ** 2 * rng.uniform(0.3, 1.5, n) + 0.01
@@ -132,9 +132,9 @@ def random_reference(n: int, duration: float, rng: np.random.Generator) -> tuple
 
 
 def simulated(arm: SerialArm, duration: float, rng: np.random.Generator) -> Signals:
-    """Let a controller follow a random reference: most of the arm's own torque ahead, and stiffness.
+    """Simulate a controller that follows a random reference: most of the arm's own torque ahead, and stiffness.
 
-    Friction's impulses of a step are within their bounds, and bring as many joints to rest as they can.
+    The impulses of friction in a step are within their bounds, and stop as many joints as they can.
     """
     import pinocchio
 
@@ -168,7 +168,7 @@ def simulated(arm: SerialArm, duration: float, rng: np.random.Generator) -> Sign
             push = moving @ velocity + step * (torque - links)
             slope, level = arm.viscous, arm.coulomb + arm.load * carried
             if arm.rise.any():
-                # Implicit in the speed, as the rest: the chord of tanh at the last one.
+                # Implicit in the speed, like the other terms: the chord of tanh at the last speed.
                 chord = np.tanh(velocity / arm.rise) / np.where(velocity, velocity, 1.0)
                 slope = slope + level * np.where(velocity, chord, 1.0 / arm.rise)
                 level = np.zeros(arm.joints)
@@ -184,7 +184,7 @@ def simulated(arm: SerialArm, duration: float, rng: np.random.Generator) -> Sign
 
 
 def _slowed(back: Array, free: Array, bound: Array, sign: Array) -> Array:
-    """Speeds after friction's impulses, each within its bound, that bring a speed to 0 if they can."""
+    """Return speeds after the impulses of friction, each within its bound, which stop a joint if they can."""
     after = free - back @ (sign * bound)
     if np.all((sign * after > 0.0) | (bound == 0.0)):
         return np.asarray(after)

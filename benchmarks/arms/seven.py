@@ -1,4 +1,4 @@
-"""Runs of the simulated arm of seven joints, and errors of what is identified of them."""
+"""Runs of the simulated arm of seven joints, and errors of the identified values."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from arms.classical import Array
 
 FRICTION = ("coulomb", "viscous")
 NAMES = tuple(f"joint_{number}" for number in range(1, JOINTS + 1))
-SLOW = 0.2  # rows of the filtered least squares below it are left out [rad/s]
+SLOW = 0.2  # slower rows are left out of the filtered least squares [rad/s]
 
 __all__ = ["FRICTION", "JOINTS", "NAMES", "URDF", "Arm", "Sensors", "random_arm", "recorded"]
 
@@ -22,7 +22,7 @@ __all__ = ["FRICTION", "JOINTS", "NAMES", "URDF", "Arm", "Sensors", "random_arm"
 def simulated(
     seeds: Iterable[int], *, coupled: bool = False, heavier: float = 1.0
 ) -> Iterator[tuple[int, Run]]:
-    """20 s of a random arm in random motion, one a seed; `heavier` multiplies link 4's inertial parameters."""
+    """Return 20 s of a random arm in random motion, one per seed; `heavier` multiplies link 4's inertial parameters."""
     for seed in seeds:
         arm = random_arm(seed, coupled=coupled)
         yield (
@@ -33,7 +33,7 @@ def simulated(
 
 @dataclass(frozen=True)
 class Errors:
-    """By parameter, (runs, joints): relative errors, whether intervals hold the truth, errors over half of one."""
+    """By parameter, (runs, joints): relative errors, whether intervals contain the truth, errors over half-widths."""
 
     relative: dict[str, Array]
     inside: dict[str, Array]
@@ -41,7 +41,7 @@ class Errors:
 
     @staticmethod
     def of(found: list[tuple[Arm, dict[str, Array], dict[str, Array]]]) -> Errors:
-        """Of runs: the arm, values and half-widths of the intervals by the parameter's name."""
+        """Return the errors of runs: the arm, values and half-widths of the intervals by the parameter's name."""
         relative, inside, scaled = {}, {}, {}
         for name in FRICTION:
             truth = np.array([arm.values(name)[:JOINTS] for arm, _, _ in found])
@@ -53,27 +53,27 @@ class Errors:
         return Errors(relative, inside, scaled)
 
     def within(self, share: float) -> int:
-        """Runs of which every Coulomb and viscous friction is as near as this."""
+        """Return the number of runs in which every Coulomb and viscous friction has at most this error."""
         far = np.max([np.abs(each).max(axis=1) for each in self.relative.values()], axis=0)
         return int(np.sum(far <= share))
 
     def worst(self, name: str) -> float:
-        """Largest relative error of a parameter."""
+        """Return the largest relative error of a parameter."""
         return float(np.abs(self.relative[name]).max())
 
     @property
     def coverage(self) -> float:
-        """Share of the intervals that hold the truth."""
+        """Return the share of the intervals that contain the truth."""
         return float(np.mean([each.mean() for each in self.inside.values()]))
 
     @property
     def of_half_width(self) -> float:
-        """Root mean square of errors over half-widths; .51 where intervals of 95 % are as wide as they should be."""
+        """Return the RMS of errors over half-widths; it is 0.51 if intervals of 95 % have the right width."""
         return float(np.sqrt(np.nanmean([each**2 for each in self.scaled.values()])))
 
 
 def of_estimate(found: jid.RobotEstimate) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Values and half-widths of the intervals; what has no interval has one of no width."""
+    """Return values and half-widths of the intervals; a value without an interval has one of width 0."""
     values, half = {}, {}
     for name in FRICTION:
         every = [found.joints[joint].parameters[name] for joint in NAMES]
@@ -86,7 +86,7 @@ def of_estimate(found: jid.RobotEstimate) -> tuple[dict[str, Array], dict[str, A
 def by_filtering(
     recording: jid.RobotRecording, cutoff: float | None, every: int = 25
 ) -> tuple[dict[str, Array], dict[str, Array]]:
-    """The classical way; stamps are made even by interpolation. Without a cutoff, differences of raw positions."""
+    """Identify by the classical method on interpolated even stamps; without a cutoff, from raw position differences."""
     import pinocchio
 
     assert recording.torque is not None

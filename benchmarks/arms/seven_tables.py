@@ -1,4 +1,4 @@
-"""The simulated arm: accuracy over runs, noise that drowns accelerations, and facts that are wrong."""
+"""The simulated arm: accuracy over runs, noise that hides accelerations, and wrong facts."""
 
 from __future__ import annotations
 
@@ -73,12 +73,12 @@ Values = tuple[dict[str, Any], dict[str, Any]]
 
 
 def identified(recording: jid.RobotRecording, inertia: Inertia) -> jid.RobotEstimate:
-    """The call that a user makes."""
+    """Make the call of a user."""
     return jid.identify_robot(recording, jid.Robot.from_urdf(URDF), inertia=inertia)
 
 
 def accuracy(seeds: range) -> Iterator[list[str]]:
-    """Of random arms with all that sensors and hosts bring."""
+    """Publish the accuracy for random arms with all effects of sensors and hosts."""
     found: dict[str, list[tuple[Arm, Any, Any]]] = {}
     estimates: dict[str, list[jid.RobotEstimate]] = {}
     for seed, ran in simulated(seeds):
@@ -104,13 +104,13 @@ def accuracy(seeds: range) -> Iterator[list[str]]:
 
 
 def warned(estimates: Sequence[jid.RobotEstimate]) -> str:
-    """How often each warning is raised."""
+    """Return how often each warning is raised."""
     counts = Counter(code for found in estimates for code in {e.code for e in found.warnings})
     return ", ".join(f"`{code}` {count}" for code, count in sorted(counts.items())) or "none"
 
 
 def noise(seeds: range) -> Iterator[list[str]]:
-    """Positions with noise, and no velocity recorded."""
+    """Publish errors for positions with noise and without a recorded velocity."""
     ways: tuple[Callable[[jid.RobotRecording], Values], ...] = (
         lambda each: of_estimate(identified(each, "urdf")),
         lambda each: of_estimate(identified(each, "free")),
@@ -130,7 +130,7 @@ def noise(seeds: range) -> Iterator[list[str]]:
 
 
 def wrong_facts(seed: int) -> Iterator[list[str]]:
-    """What is stated is not what was recorded."""
+    """Publish errors where the stated facts differ from the recorded arm."""
     ((_, ran),) = simulated([seed])
     recording = recorded(ran, Sensors(), seed)
     order = [0, 1, 3, 2, *range(4, JOINTS)]
@@ -167,7 +167,7 @@ def wrong_facts(seed: int) -> Iterator[list[str]]:
 
 
 def heavier(seeds: range) -> Iterator[list[str]]:
-    """Link 4 with 20 % more mass than the URDF says."""
+    """Identify with link 4 20 % heavier than in the URDF."""
     for seed, ran in simulated(seeds, heavier=1.2):
         recording = recorded(ran, Sensors(), seed)
         joints = identified(recording, "scaled").joints

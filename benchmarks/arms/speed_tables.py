@@ -1,4 +1,4 @@
-"""How long a call takes, and how much memory: each recording in a program of its own."""
+"""Time and memory of a call, each recording in a program of its own."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _PERIOD = 10.0  # of the motion [s]
 
 
 def tables(seed: int, repeats: int, hour: bool) -> Iterator[list[str]]:
-    """20 s, and an hour of the same motion again and again."""
+    """Publish figures for 20 s, and for an hour of the same motion again and again."""
     ((_, ran),) = simulated([seed])
     short = recorded(ran, Sensors(), seed)
     cases = [("20 s", short, inertia, repeats) for inertia in ("urdf", "scaled", "free")]
@@ -59,7 +59,7 @@ def tables(seed: int, repeats: int, hour: bool) -> Iterator[list[str]]:
 
 
 def timed(path: Path, inertia: str, repeats: int) -> dict[str, list[float]]:
-    """What the other program says; single numbers as lists of one."""
+    """Return the output of the other program; single numbers as lists of one."""
     command = [sys.executable, str(Path(__file__).with_name("timed.py")), str(path), inertia]
     done = subprocess.run([*command, str(repeats)], capture_output=True, text=True, check=True)
     found = json.loads(done.stdout)
@@ -67,7 +67,7 @@ def timed(path: Path, inertia: str, repeats: int) -> dict[str, list[float]]:
 
 
 def lengthened(recording: jid.RobotRecording, periods: int) -> jid.RobotRecording:
-    """One period of the motion again and again, without the velocities."""
+    """Repeat one period of the motion, without the velocities."""
     part = recording.crop(5.0, 5.0 + _PERIOD - 1e-4)
     assert part.torque is not None
     starts = np.repeat(np.arange(periods) * _PERIOD, part.samples)

@@ -16,7 +16,7 @@ URDF = Path(__file__).resolve().parents[2] / "tests" / "simulated_arm" / "seven_
 
 
 def reference(recording: jid.RobotRecording) -> float:
-    """Processor seconds of a plain Python loop: the four regressors that a sample's balance needs, by pinocchio."""
+    """Return processor seconds of a plain Python loop: the four regressors of a sample's balance, by pinocchio."""
     import pinocchio
 
     model = pinocchio.buildModelFromUrdf(str(URDF))
@@ -34,7 +34,7 @@ def reference(recording: jid.RobotRecording) -> float:
 
 
 def memory(field: str) -> float:
-    """VmRSS or VmHWM [MB]; what getrusage says begins with the parent's."""
+    """Return VmRSS or VmHWM [MB], because the peak of getrusage starts at the parent's."""
     for line in Path("/proc/self/status").read_text(encoding="ascii").splitlines():
         if line.startswith(f"{field}:"):
             return int(line.split()[1]) / 1024.0
@@ -42,7 +42,7 @@ def memory(field: str) -> float:
 
 
 def recorded_bytes(recording: jid.RobotRecording) -> int:
-    """Of the signals."""
+    """Return the size of the signals in bytes."""
     every = [getattr(recording, name) for name in recording.signals]
     return sum(each.nbytes for each in every)
 

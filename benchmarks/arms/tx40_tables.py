@@ -1,4 +1,4 @@
-"""TX40: friction of both ways beside the published one, and what both predict of blocks they have not seen."""
+"""TX40: friction of both methods next to the published values, and their predictions of held-out blocks."""
 
 from __future__ import annotations
 
@@ -16,11 +16,16 @@ from arms.classical import Array, Mask
 from arms.held_out import Share, Windows, folds
 
 FOLDS = 5
-CUTOFFS = ((20.0, 50), (40.0, 25), (60.0, 25), (100.0, 25))  # [Hz], and each how many samples
+CUTOFFS = (
+    (20.0, 50),
+    (40.0, 25),
+    (60.0, 25),
+    (100.0, 25),
+)  # [Hz], and the interval between rows in samples
 THIN = 5  # samples, for predictions: 1 kHz
 CUTOFF, EVERY = 20.0, 50  # for the parameters
 PUBLISHED_MODEL = "coulomb_viscous"
-MOTION = 40.0  # cutoff of the motion by which ours predicts [Hz]
+MOTION = 40.0  # cutoff of the motion for our prediction [Hz]
 OURS: dict[str, dict[str, Any]] = {
     "jointid, inertia free, Coulomb and viscous": {
         "cutoff": MOTION,
@@ -62,7 +67,7 @@ LENGTHS = (0.025, 0.1)  # of the windows [s]
 
 @dataclass(frozen=True)
 class Log:
-    """The log at the joints, and which samples move."""
+    """The log at the joints, and the mask of moving samples."""
 
     folder: Path
     time: Array
@@ -71,18 +76,18 @@ class Log:
 
     @staticmethod
     def read(folder: Path) -> Log:
-        """Of the folder that holds it and the URDF."""
+        """Return the log from the folder with it and the URDF."""
         return Log(folder, *tx40.log(folder))
 
     @property
     def moving(self) -> Mask:
-        """Which samples are not of the standstill at the end."""
+        """Return the mask of samples before the standstill at the end."""
         begin, end = tx40.MOVING
         return np.asarray((self.time >= begin) & (self.time < end))
 
     @property
     def robot(self) -> jid.Robot:
-        """What our call is told: the URDF, ratios, couplings, zeros."""
+        """Return the facts for our call: the URDF, ratios, couplings, zeros."""
         ratios = np.array(tx40.GEAR_RATIOS)
         return jid.Robot.from_urdf(
             self.folder / "tx40.urdf",
@@ -92,17 +97,17 @@ class Log:
         )
 
     def velocity(self) -> Array:
-        """Of the joints, as `Recording` derives it from the positions."""
+        """Return the joint velocities, as `Recording` derives them from the positions."""
         joints = [jid.Recording(time=self.time, position=each) for each in self.position.T]
         return np.column_stack([joint.velocity for joint in joints])
 
     def recording(self) -> jid.RobotRecording:
-        """The raw log at the motors."""
+        """Return the raw log at the motors."""
         return jid.load_robot(self.folder / "tx40.csv.gz", gear_ratio=list(tx40.GEAR_RATIOS))
 
 
 def held_out_of_classical(log: Log, cutoff: float, every: int) -> dict[float, Share]:
-    """By the windows' length."""
+    """Return residuals of the classical method by the windows' length."""
     model, sources = tx40.urdf(log.folder), tx40.sources()
     signals = classical.filtered(log.time, log.position, log.torque, cutoff)
     rows = classical.rows_of(model, sources, signals, every)
@@ -131,10 +136,10 @@ def held_out_of_classical(log: Log, cutoff: float, every: int) -> dict[float, Sh
 
 
 def held_out_of_ours(log: Log, cutoff: float | None, **options: Any) -> dict[float, Share]:
-    """By the windows' length; the call is told nothing but the robot.
+    """Return residuals of our method by the windows' length; the call knows only the robot.
 
-    The motion for the prediction is filtered as in the classical way, so that only what was identified differs;
-    without a cutoff, it is the package's own.
+    The motion for the prediction is filtered as in the classical method, so that only the identified values differ.
+    Without a cutoff, it is the package's own motion.
     """
     model, whole = tx40.urdf(log.folder), log.recording()
     thin, torque = log.time[::THIN], log.torque[::THIN]
@@ -158,7 +163,7 @@ def held_out_of_ours(log: Log, cutoff: float | None, **options: Any) -> dict[flo
 
 
 def parameters(log: Log) -> Iterator[list[str]]:
-    """Friction beside the published one."""
+    """Publish the friction next to the published values."""
     ours_found = jid.identify_robot(
         log.recording(), log.robot, inertia="free", model=PUBLISHED_MODEL
     )
@@ -183,7 +188,7 @@ def parameters(log: Log) -> Iterator[list[str]]:
 
 
 def ours_of(found: jid.RobotEstimate) -> dict[str, Any]:
-    """Parameters by the names of the published ones; jointid's viscous friction holds the motor's, too."""
+    """Return parameters by the names of the published ones; jointid's viscous friction includes the motor's."""
     values = {}
     for number in range(1, tx40.JOINTS + 1):
         for kind in ("viscous", "coulomb"):
@@ -195,7 +200,7 @@ def ours_of(found: jid.RobotEstimate) -> dict[str, Any]:
 
 
 def held_out(log: Log) -> Iterator[list[str]]:
-    """Both ways on blocks that they have not seen."""
+    """Publish the residuals of both methods on held-out blocks."""
     theirs = {
         f"filtered least squares, {cutoff:g} Hz, every {every}th sample": held_out_of_classical(
             log, cutoff, every
@@ -216,5 +221,5 @@ def held_out(log: Log) -> Iterator[list[str]]:
 
 
 def percent(share: float, sign: bool = True) -> str:
-    """In %, with one digit after the point."""
+    """Return a share in %, with one decimal."""
     return f"{100.0 * share:{'+' if sign else ''}.1f}"

@@ -1,10 +1,10 @@
 // The penalty and the genetic algorithm of the thesis's MATLAB listing, statement by statement in
-// scalar C++: what somebody gets who translates it and compiles with -O2. Nothing is taken out of
-// the loops but what the listing itself takes out.
+// scalar C++, as a plain translation compiled with -O2. Only those computations are outside the
+// loops that are outside in the listing itself.
 //
 //   genetic RECORDING POPULATION GENERATIONS SEED   ->  "seconds candidates best_penalty"
 //
-// RECORDING holds time, position, velocity, torque and sensor, one sample a line.
+// RECORDING holds time, position, velocity, torque and sensor, one sample per line.
 
 #include <algorithm>
 #include <array>
@@ -46,7 +46,7 @@ std::vector<double> sensor_integral(const Recording& r) {
   return sum;
 }
 
-// The same as the model has it.
+// The same integral from the model.
 std::vector<double> model_integral(const Chromosome& p, const Recording& r) {
   const double inertia = 101.0 * 101.0 * 0.0002472;
   std::vector<double> sum(r.time.size(), 0.0);
@@ -67,7 +67,7 @@ std::vector<double> model_integral(const Chromosome& p, const Recording& r) {
   return sum;
 }
 
-// The listing integrates the sensor anew for every candidate.
+// The listing integrates the sensor again for every candidate.
 double penalty(const Chromosome& p, const Recording& r) {
   const std::vector<double> sensed = sensor_integral(r);
   const std::vector<double> modelled = model_integral(p, r);
@@ -156,8 +156,8 @@ class Search {
     return next;
   }
 
-  // The smaller parent's gene goes first; children beyond the upper bound are put on it, negative
-  // ones reversed.
+  // The smaller parent's gene goes first; children above the upper bound are set to it, negative
+  // ones change sign.
   void sbx(double a, double b, std::size_t n, Individual& first, Individual& second) {
     const double u = uniform();
     const double spread = std::pow(u <= 0.5 ? 2 * u : 1 / (2 * (1 - u)), 1.0 / 5);

@@ -1,1 +1,1 @@
-"""The libraries that are timed, one a file."""
+"""The timed libraries, one per file."""

@@ -22,7 +22,7 @@ def one_by_one(objective: Objective, seed: int) -> None:
 
 
 def populations(objective: Objective, seed: int) -> None:
-    """Ask and tell, a population a call."""
+    """Search by ask and tell, one population per call."""
     rng = np.random.default_rng(seed)
     strategy = cma.CMAEvolutionStrategy(
         rng.uniform(0.0, 1.0, objective.size),
@@ -35,7 +35,7 @@ def populations(objective: Objective, seed: int) -> None:
 
 
 def peers() -> list[Peer]:
-    """Each way with both forms of the penalty; the population is pycma's own, 4 + 3 ln 6."""
+    """Return each variant with both forms of the penalty; the population is pycma's own, 4 + 3 ln 6."""
     ways = {"pycma fmin2, restarts": one_by_one, "pycma ask and tell": populations}
     return [
         Peer(name=name, form=form, solve=solve)

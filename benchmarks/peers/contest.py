@@ -1,4 +1,4 @@
-"""What every peer is given: one penalty in two forms, one box, and an objective that ends the run at the target."""
+"""The common problem of every peer: one penalty in two forms, one box, and an objective that ends the run."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ CLOSE = 1e-3  # of the optimal penalty
 SAME = 1e-9  # between the two forms of the penalty
 
 
-class Reached(BaseException):  # a library's `except Exception` must not swallow it
+class Reached(BaseException):  # a library's `except Exception` must not catch it
     """The target is met."""
 
 
@@ -33,7 +33,7 @@ class Expired(BaseException):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contest:
-    """The problem, made once; arrays are over the six free parameters unless said otherwise."""
+    """The problem, made once; arrays are over the six free parameters unless stated otherwise."""
 
     recording: jid.Recording
     joint: jid.Joint
@@ -57,18 +57,18 @@ class Contest:
 
     @property
     def target(self) -> float:
-        """What counts as found."""
+        """Penalty at which the optimum counts as found."""
         return self.best_penalty * (1.0 + CLOSE)
 
     def sums(
         self,
     ) -> tuple[list[jid.Recording], list[NDArray[np.bool_]], NDArray[np.int64], list[int]]:
-        """What `numpy_decay` takes."""
+        """Return the arguments of `numpy_decay`."""
         windows = self.direct.windows
         return [self.recording], [self.usable], windows, [0] * len(windows)
 
     def full(self, free: Array) -> Array:
-        """With the fixed inertia in front."""
+        """Return the parameters with the fixed inertia in front."""
         return np.concatenate([self.full_lower[:1], free])
 
 
@@ -111,14 +111,14 @@ def make_contest(recording: jid.Recording | None = None) -> Contest:
 def problem_of(
     recording: jid.Recording, joint: jid.Joint, windows: int | None
 ) -> tuple[Problem, _core.Penalty]:
-    """The problem and its direct penalty as `identify` makes them for the residual of the thesis."""
+    """Return the problem and its direct penalty as `identify` makes them for the residual of the thesis."""
     choice = choose_terms((recording,), joint, Request(residual="sensor"))
     problem = Problem(recordings=(recording,), joint=joint, choice=choice)
     return problem, problem.penalty(windows)
 
 
 def prove_same(contest: Contest) -> None:
-    """Random candidates and the optimum: NumPy, one and many, against the compiled direct sum."""
+    """Check random candidates and the optimum: NumPy, one and many, against the compiled direct sum."""
     rng = np.random.default_rng(0)
     free = rng.uniform(contest.lower, contest.upper, (50, contest.lower.size))
     free = np.vstack([free, contest.best])
@@ -131,7 +131,7 @@ def prove_same(contest: Contest) -> None:
 
 
 class Objective:
-    """What a peer minimises. Raises `Reached` at the very candidate that meets the target.
+    """The objective of a peer. Raises `Reached` at the very candidate that meets the target.
 
     Calling takes one candidate, `many` rows of them; `unit` and `many_unit` take the unit box.
     """
@@ -160,12 +160,12 @@ class Objective:
             raise Expired
 
     def settled(self, value: float) -> float:
-        """The value of a candidate that a peer has evaluated by itself."""
+        """Take the value of a candidate that the peer evaluated without the objective."""
         self._settle(value, 1)
         return value
 
     def __call__(self, free: Array) -> float:
-        """Penalty of one candidate."""
+        """Return the penalty of one candidate."""
         if self.compiled:
             self._free[:] = free
             free = self._full
@@ -174,7 +174,7 @@ class Objective:
         return value
 
     def many(self, rows: Array) -> Array:
-        """Penalties of many candidates, one a row."""
+        """Return the penalties of many candidates, one per row."""
         rows = np.asarray(rows, dtype=np.float64)
         if self.compiled:
             full = np.empty((self.size + 1, len(rows)), order="F")
@@ -187,15 +187,15 @@ class Objective:
         return values
 
     def unit(self, x: Array) -> float:
-        """Penalty of one point of the unit box."""
+        """Return the penalty of one point of the unit box."""
         return self(self.lower + self.width * np.asarray(x))
 
     def many_unit(self, rows: Array) -> Array:
-        """Penalties of points of the unit box, one a row."""
+        """Return the penalties of points of the unit box, one per row."""
         return self.many(self.lower + self.width * np.asarray(rows))
 
     def residuals(self, free: Array) -> Array:
-        """Residuals, one a window, for least squares."""
+        """Return the residuals, one per window, for least squares."""
         if self.compiled:
             self._free[:] = free
             values = self.contest.direct.residuals(self._full)
@@ -205,6 +205,6 @@ class Objective:
         return values
 
     def jacobian(self, free: Array) -> Array:
-        """Derivatives of the residuals, by the compiled penalty."""
+        """Return the derivatives of the residuals, by the compiled penalty."""
         self._free[:] = free
         return self.contest.direct.jacobian(self._full)[:, 1:]

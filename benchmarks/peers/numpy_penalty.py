@@ -1,4 +1,4 @@
-"""The penalty as a competent NumPy user writes it: whatever does not depend on the candidate is done beforehand."""
+"""The penalty in good NumPy code: everything that does not depend on the candidate is computed beforehand."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class NumpyPenalty:
     usable : array of bool, shape (samples - 1,)
         Intervals in which the joint moves.
     windows : array of int, shape (windows, 2)
-        First and last sample of each.
+        First and last sample of each window.
     names : sequence of str
         Order of the parameters.
     """
@@ -52,7 +52,7 @@ class NumpyPenalty:
         def middle(values: Array) -> Array:
             return np.asarray(0.5 * (values[k] + values[k + 1]), dtype=np.float64)
 
-        # Within an interval that reverses, each sign holds up to the crossing on the straight line.
+        # Within an interval with a reversal, each sign holds up to the crossing on the straight line.
         v0, v1 = speed[k], speed[k + 1]
         crosses = v0 * v1 < 0.0
         part = np.where(crosses, np.abs(v0) / np.maximum(np.abs(v0) + np.abs(v1), 1e-300), 1.0)
@@ -60,7 +60,7 @@ class NumpyPenalty:
         after = 0.5 * step * np.sign(v1) * np.where(crosses, 1.0 - part, 1.0)
         signs = over_windows(before + after)
         self._at_rest = over_windows(np.where(crosses, before + after, 0.0))
-        # One weight a sample and window, so that each exponential is taken once.
+        # One weight per sample and window, so that each exponential is computed once.
         node = np.concatenate([window, window]) * (len(time) + 1) + np.concatenate([k, k + 1])
         nodes, place = np.unique(node, return_inverse=True)
         self._weight = np.bincount(place, np.concatenate([before, after]))
@@ -82,7 +82,7 @@ class NumpyPenalty:
         self._gain = names.index("sensor_gain")
 
     def residuals(self, theta: Array) -> Array:
-        """Residuals of the windows, one candidate."""
+        """Return the residuals of the windows for one candidate."""
         decay = self._weight * np.exp(-theta[self._shape] * self._square)
         column = np.add.reduceat(decay, self._starts) + self._at_rest
         modelled = self._columns @ theta[self._linear] + theta[self._static] * column
@@ -90,12 +90,12 @@ class NumpyPenalty:
         return result
 
     def __call__(self, theta: Array) -> float:
-        """Sum of squares."""
+        """Return the sum of squares."""
         r = self.residuals(theta)
         return float(r @ r)
 
     def many(self, candidates: Array) -> Array:
-        """Penalties of candidates, shape (count, parameters)."""
+        """Return the penalties of candidates, shape (count, parameters)."""
         decay = np.exp(np.multiply.outer(-candidates[:, self._shape], self._square))
         decay *= self._weight
         column = np.add.reduceat(decay, self._starts, axis=1) + self._at_rest

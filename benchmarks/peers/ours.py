@@ -1,4 +1,4 @@
-"""jointid itself: whole `identify` calls, and the search alone, stopped by its callback at the target."""
+"""jointid itself: whole `identify` calls, and only the search, stopped by its callback at the target."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ POPULATION, GENERATIONS = 200, 1500  # of the thesis presets
 
 
 def whole_identify(method: Method, windows: int | None) -> Solve:
-    """The call a user makes: checks, penalty, search, polish, standard errors, warnings."""
+    """Run the call of a user: checks, penalty, search, polish, standard errors, warnings."""
 
     def solve(objective: Objective, seed: int) -> None:
         contest = objective.contest
@@ -23,7 +23,7 @@ def whole_identify(method: Method, windows: int | None) -> Solve:
         )
         found = estimate.convergence
         objective.evaluations += int(found.evaluations[-1]) if found is not None else 0
-        # By instruments, as the default is, and over its windows: held against its own optimum.
+        # By instruments and over its own windows, which are the defaults, so it is compared with its own optimum.
         objective.best = contest.best_penalty * estimate.penalty / own_optimum(contest, windows)
 
     return solve
@@ -33,7 +33,7 @@ _OPTIMA: dict[int | None, float] = {}
 
 
 def own_optimum(contest: Contest, windows: int | None) -> float:
-    """The optimal penalty of the whole call; found once, in the untimed first round."""
+    """Return the optimal penalty of the whole call; found once, in the untimed first round."""
     if windows not in _OPTIMA:
         best = jid.identify(contest.recording, contest.joint, windows=windows, search="separable")
         _OPTIMA[windows] = best.penalty
@@ -41,7 +41,7 @@ def own_optimum(contest: Contest, windows: int | None) -> float:
 
 
 def search(options: _core.GaOptions, threads: int = 0) -> Solve:
-    """Compression, genetic search until the target, and the polish if the options have one."""
+    """Run compression, genetic search until the target, and the polish if the options have one."""
 
     def solve(objective: Objective, seed: int) -> None:
         contest = objective.contest
@@ -67,7 +67,7 @@ def search(options: _core.GaOptions, threads: int = 0) -> Solve:
 
 
 def separable(objective: Objective, seed: int) -> None:
-    """Elimination of the linear parameters; deterministic."""
+    """Eliminate the linear parameters; deterministic."""
     del seed
     contest = objective.contest
     low, high = contest.full_lower, contest.full_upper
@@ -80,7 +80,7 @@ def separable(objective: Objective, seed: int) -> None:
 
 
 def polish(objective: Objective, seed: int) -> None:
-    """Levenberg-Marquardt on the direct sum, from the starts that SciPy's least squares gets."""
+    """Run Levenberg-Marquardt on the direct sum, from the starts of SciPy's least squares."""
     contest = objective.contest
     start = contest.full(near_optimum(objective, seed))
     found = _core.polish(contest.direct, contest.full_lower, contest.full_upper, start)
@@ -89,7 +89,7 @@ def polish(objective: Objective, seed: int) -> None:
 
 
 def peers() -> list[Peer]:
-    """Rows; those called `identify` time the whole call."""
+    """Return the rows; those called `identify` time the whole call."""
     thesis, code = (
         options.replace(population=POPULATION, generations=GENERATIONS)
         for options in (_core.GaOptions.thesis(), _core.GaOptions.thesis_code())

@@ -1,4 +1,4 @@
-"""A row of the contest, and how one run of it is timed."""
+"""A row of the contest, and the timing of one run of it."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ class Peer:
     Attributes
     ----------
     name : str
-        With its settings, as the table shows it.
+        Name with its settings, as the table shows it.
     form : str
-        "NumPy", "compiled" or "compressed": the penalty it is handed.
+        "NumPy", "compiled" or "compressed": the form of its penalty.
     solve : callable
-        Takes an objective and a seed, and searches until the objective ends it. A search that ends by
-        itself is started again with another seed until the limit.
+        Takes an objective and a seed, and searches until the objective ends it. A search that ends earlier
+        is started again with another seed until the limit.
     given : str
-        What it makes use of.
+        Information that it uses.
     whole : bool
-        Runs to its own end; it returns the penalty it found, in `objective.best`.
+        Whether it runs to its own end; it returns its penalty in `objective.best`.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Peer:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Run:
-    """What one run gave; `ratio` is the best penalty over the optimum's."""
+    """Result of one run; `ratio` is the best penalty over the optimum's."""
 
     peer: str
     seed: int
@@ -56,12 +56,12 @@ class Run:
     starts: int
 
     def asdict(self) -> dict[str, Any]:
-        """The fields as a dictionary."""
+        """Return the fields as a dictionary."""
         return asdict(self)
 
 
 def timed(peer: Peer, contest: Contest, seed: int, limit: float) -> Run:
-    """One run, from call to stop."""
+    """Time one run, from call to stop."""
     objective = Objective(contest, compiled=peer.form != "NumPy", limit=limit)
     began = time.perf_counter()
     reached = False

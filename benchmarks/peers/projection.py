@@ -1,7 +1,7 @@
-"""Variable projection (Golub and Pereyra 1973): the penalty as a function of the shapes alone, in NumPy.
+"""Variable projection (Golub and Pereyra 1973): the penalty as a function of only the shapes, in NumPy.
 
-The linear columns are decomposed once; a shape then costs its decaying column and a few products. No bounds are kept:
-the peer's user looks at the answer.
+The linear columns are decomposed once; a shape then costs its decaying column and a few products. Bounds are ignored:
+the peer's user checks the answer.
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ class Projection:
     direct : Penalty
         Gives the columns that do not depend on the shapes, and the target.
     lower, upper : array, shape (parameters,)
-        Where they are equal, a coefficient is fixed.
+        A coefficient with equal bounds is fixed.
     decay : callable
-        From the shapes to the one column that depends on them, shape (windows,).
+        Returns the one column that depends on the shapes, shape (windows,).
     """
 
     def __init__(self, direct: _core.Penalty, lower: Array, upper: Array, decay: Decay) -> None:
@@ -53,7 +53,7 @@ class Projection:
         self.evaluations = 0
 
     def __call__(self, shapes: Array) -> float:
-        """Penalty of one candidate."""
+        """Return the penalty of one candidate."""
         self.evaluations += 1
         column = self._decay(np.atleast_1d(shapes))
         column = column - self._basis @ (self._basis.T @ column)
@@ -68,7 +68,7 @@ def numpy_decay(
     windows: NDArray[np.int64],
     owner: Sequence[int],
 ) -> Decay:
-    """The column of friction that decays with the speed, everything done beforehand that can be.
+    """Return the column of friction that decays with the speed; all that is possible is computed beforehand.
 
     Parameters
     ----------
@@ -124,6 +124,6 @@ def numpy_decay(
 
 
 def compiled_decay(direct: _core.Penalty) -> Decay:
-    """The same by our compiled direct sum."""
+    """Return the same by our compiled direct sum."""
     place = next(j for j, name in enumerate(direct.names) if name.startswith("static"))
     return lambda shapes: np.asarray(direct.columns(shapes))[:, place]

@@ -1,4 +1,4 @@
-"""Variable projection in the contest: a search over the one shape, the usual ones with the rest eliminated."""
+"""Variable projection in the contest: usual searches over the one shape, with the rest eliminated."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Value = Callable[[float], float]
 
 
 def projection_of(contest: Contest, *, compiled: bool) -> Projection:
-    """Made once, as the penalty is: a peer is given it ready."""
+    """Return the projection, made once, because a peer receives it ready."""
     key = (id(contest), compiled)
     if key not in _MADE:
         direct = contest.direct
@@ -33,7 +33,7 @@ def projection_of(contest: Contest, *, compiled: bool) -> Projection:
 
 
 def over_shapes(search: Callable[[Value, float, int], None]) -> Solve:
-    """A search over the root of the shape, which is like a speed, from 0 to its upper bound."""
+    """Search over the root of the shape, which is like a speed, from 0 to its upper bound."""
 
     def solve(objective: Objective, seed: int) -> None:
         contest = objective.contest
@@ -64,7 +64,7 @@ def evolution(value: Value, highest: float, seed: int) -> None:
 
 
 def strategy(value: Value, highest: float, seed: int) -> None:
-    """CMA-ES; pycma wants two dimensions, the second does nothing."""
+    """Run CMA-ES. pycma needs two dimensions; the second has no effect."""
 
     def first(x: NDArray[np.float64]) -> float:
         return value(highest * float(x[0]))
@@ -75,7 +75,7 @@ def strategy(value: Value, highest: float, seed: int) -> None:
 
 
 class _Problem:
-    """What pygmo asks of a user's problem."""
+    """Methods that pygmo requires of a user's problem."""
 
     def __init__(self, value: Value, highest: float) -> None:
         self.value, self.highest = value, highest
@@ -96,7 +96,7 @@ def genetic(value: Value, highest: float, seed: int) -> None:
 
 
 def peers() -> list[Peer]:
-    """Each with both forms of the shaped column."""
+    """Return each peer with both forms of the shaped column."""
     rows = {
         NAME: scalar,
         "SciPy differential_evolution, eliminated": evolution,

@@ -11,7 +11,7 @@ from peers.contest import Objective
 from peers.peer import Peer, Solve
 
 FOREVER = 1_000_000  # generations: the target or the limit ends the run
-CANONICAL = 9  # CMA-ES's own choice for six parameters: 4 + 3 ln n, which is pycma's default, too
+CANONICAL = 9  # CMA-ES's own value for six parameters: 4 + 3 ln n, which is pycma's default, too
 TIGHT = 1e-14  # its tolerances are absolute, and the penalty is of the order of 1e-4
 
 

@@ -9,7 +9,7 @@ from peers.contest import Objective
 from peers.peer import Peer
 from peers.starts import near_optimum
 
-TIGHT = 1e-12  # the penalty is of the order of 1e-4: the default tolerances would stop short of it
+TIGHT = 1e-12  # the penalty is of the order of 1e-4, so the default tolerances would stop too early
 
 
 def evolution(objective: Objective, seed: int) -> None:
@@ -19,10 +19,10 @@ def evolution(objective: Objective, seed: int) -> None:
 
 
 def vectorised(objective: Objective, seed: int) -> None:
-    """As the documentation advises for a vectorised function: a population a call, deferred updating."""
+    """Evolve as the documentation advises for a vectorised function: one population per call, deferred updating."""
 
     def many(columns: np.ndarray) -> np.ndarray:
-        if columns.ndim == 1:  # the polish asks for one
+        if columns.ndim == 1:  # the polish passes a single candidate
             return np.asarray(objective(columns))
         return objective.many(columns.T)
 

@@ -1,4 +1,4 @@
-"""The peer of `identify_servo`: pycma's CMA-ES on rollouts of the same model, as servo fits are done elsewhere."""
+"""The peer of `identify_servo`: pycma's CMA-ES on rollouts of the same model, as in usual fits of servos."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FLAT = 1e-6
 
 
 def described(joint: jid.Joint, values: Array) -> jid.Joint:
-    """The joint with these values."""
+    """Return the joint with these values."""
     assert joint.voltage is not None
     k_t, resistance, viscous, coulomb, load, inertia = (float(value) for value in values)
     return joint.replace(
@@ -71,7 +71,7 @@ def evolved(
     generations: int = 250,
     seed: int = 0,
 ) -> tuple[list[float], int]:
-    """Return the values whose rollouts are nearest to the logs, and how many sets of rollouts that took.
+    """Return the values with the rollouts nearest to the logs, and the number of sets of rollouts.
 
     Parameters
     ----------
@@ -79,7 +79,7 @@ def evolved(
     joint : Joint
     load_friction : bool
     searches : int
-        With seeds of their own, of which the best counts: one alone may end beside it.
+        Number of searches with their own seeds. The best counts, because one search may miss the optimum.
     population, generations : int
         A search ends earlier when its errors have become flat.
     seed : int

@@ -1,4 +1,4 @@
-"""Where local searches start."""
+"""Starts of local searches."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,7 +9,7 @@ NEAR = 0.2
 
 
 def near_optimum(objective: Objective, seed: int) -> NDArray[np.float64]:
-    """Within 20 % of the optimum in every parameter, which a user rarely has."""
+    """Return a start within 20 % of the optimum in every parameter, which a user rarely has."""
     rng = np.random.default_rng(seed)
     best = objective.contest.best
     start = best * (1.0 + rng.uniform(-NEAR, NEAR, best.size))

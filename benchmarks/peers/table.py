@@ -16,7 +16,7 @@ from peers.peer import Peer
 
 
 def all_peers() -> list[Peer]:
-    """Ours first."""
+    """Return all rows, ours first."""
     rooms = (
         ours,
         projection_peers,

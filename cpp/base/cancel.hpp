@@ -1,18 +1,18 @@
 #pragma once
-// A flag that workers read once a block, so that long work ends soon after a request.
+// A flag that workers read once per block, so that long work ends soon after a request.
 
 #include <atomic>
 
 namespace jointid::base {
 
-/// Thrown by work that was asked to stop; unwinds through the core, never reaches a user by itself.
+/// Thrown by work that must stop. It unwinds through the core and never reaches a user directly.
 struct Cancelled {};
 
 class Cancel {
  public:
   void request() { requested_.store(true, std::memory_order_relaxed); }
   [[nodiscard]] bool requested() const { return requested_.load(std::memory_order_relaxed); }
-  /// Called by a worker once a block.
+  /// A worker calls this once per block.
   void check() const {
     if (requested()) throw Cancelled{};
   }

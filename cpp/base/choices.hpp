@@ -1,5 +1,5 @@
 #pragma once
-// Choices with names: an enumeration whose values are written as words.
+// Named choices: enumerations with values that are written as words.
 
 #include <array>
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace jointid::base {
 
-/// Specialised for each enumeration: `field`, the option it belongs to, and `all`, its words in the
-/// order of its values.
+/// Specialised for each enumeration: `field` is the option that takes the choice, `all` the words
+/// in the order of the values.
 template <class Choice>
 struct Words;
 
@@ -20,7 +20,7 @@ std::string_view word(Choice choice) {
   return Words<Choice>::all.at(static_cast<std::size_t>(choice));
 }
 
-/// Throws InputError naming the known words.
+/// Throws InputError that lists the known words.
 template <class Choice>
 Choice chosen(std::string_view asked) {
   std::string known;

@@ -10,7 +10,7 @@ namespace jointid::base {
 
 namespace {
 
-constexpr double kReduced = 1.6e6;  // [rad]: up to here the reduction is exact enough
+constexpr double kReduced = 1.6e6;  // [rad]: up to this size the reduction is exact enough
 
 JOINTID_CLONES double largest(const double* angle, std::size_t count) {
   double most = 0.0;
@@ -25,7 +25,7 @@ JOINTID_CLONES void near_circle(const double* angle, std::size_t count, double* 
                                 double* sine) {
   std::size_t i = 0;
 #if defined(JOINTID_PAIRS) && !defined(JOINTID_CLONED)
-  // Without the choices of wider vectors, gcc leaves the loop below scalar.
+  // Without the clones for wider vectors, gcc leaves the loop below scalar.
   for (; i + 2 <= count; i += 2) {
     const auto [r, tail, quadrant] = detail::reduce(detail::Pair{angle[i], angle[i + 1]});
     const detail::Pair s = detail::sin_series(r, tail);

@@ -1,5 +1,5 @@
 #pragma once
-// Cosine and sine of many angles: the same bits as one by one, side by side in the host's vectors.
+// Cosine and sine of many angles in the host's vectors, with the same bits as one by one.
 
 #include <cstddef>
 

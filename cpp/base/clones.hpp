@@ -1,13 +1,13 @@
 #pragma once
 // JOINTID_CLONES before a function makes the compiler build it for several vector widths; the
-// loader picks the widest that the host has. The bits are the same on every host: the arithmetic
-// of a lane does not depend on the width, contraction into fused operations is off
+// loader picks the widest that the host has. The bits are the same on every host: the arithmetic of
+// a lane does not depend on the width, contraction into fused operations is off
 // (-ffp-contract=off), and sums keep the order in which they are written.
-// Needs ifunc (GNU libc); sanitizers run before it is resolved. Of clang those that have been
-// tried: version 14 leaves the clones of a function out that a header declares without the
-// attribute.
-// JOINTID_CLONED says that there are any.
-// A compiler that is given -DJOINTID_CLONES= makes none, to see what that costs.
+// Clones need ifunc (GNU libc). Sanitizers exclude them, because they run before ifunc is resolved.
+// Only tested versions of clang are admitted: version 14 omits the clones of a function that a
+// header declares without the attribute.
+// JOINTID_CLONED is defined if there are clones.
+// -DJOINTID_CLONES= switches the clones off, to measure their benefit.
 
 #ifndef JOINTID_CLONES
 #if defined(__x86_64__) && defined(__gnu_linux__)

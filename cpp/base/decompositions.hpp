@@ -1,6 +1,6 @@
 #pragma once
-// Decompositions of dense matrices. Eigen's templates behind them take most of a file's time in the
-// compiler, so they are instantiated here alone.
+// Decompositions of dense matrices. Eigen's templates take most of a file's compile time, so they
+// are instantiated only in decompositions.cpp.
 
 #include <Eigen/Core>
 #include <optional>
@@ -8,7 +8,7 @@
 namespace jointid::base {
 
 struct Orthogonal {
-  Eigen::MatrixXd basis;     ///< orthonormal columns, as many as the matrix has
+  Eigen::MatrixXd basis;     ///< orthonormal columns, the same number as in the matrix
   Eigen::MatrixXd triangle;  ///< matrix = basis triangle
 };
 
@@ -26,26 +26,26 @@ Reduced reduced(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 /// The least-squares solution; dependent columns get zero.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
-/// Coordinates of what the columns of `matrix` have outside the range of `columns`.
+/// Coordinates of the part of `matrix` outside the range of `columns`.
 Eigen::MatrixXd outside(const Eigen::MatrixXd& columns, const Eigen::MatrixXd& matrix);
 
 struct Eigenpairs {
   Eigen::VectorXd values;   ///< the smallest first
-  Eigen::MatrixXd vectors;  ///< a column each
+  Eigen::MatrixXd vectors;  ///< one per column
 };
 
 Eigenpairs eigenpairs(const Eigen::MatrixXd& symmetric);
 
-/// The lower Cholesky factor; none of a matrix that is not positive definite.
+/// The lower Cholesky factor; nothing if the matrix is not positive definite.
 std::optional<Eigen::MatrixXd> cholesky(const Eigen::MatrixXd& symmetric);
 
 /// The solution of a positive semidefinite system.
 Eigen::VectorXd solve_semidefinite(const Eigen::MatrixXd& system, const Eigen::VectorXd& right);
 
-/// The upper triangle alone of `upper` is read.
+/// Reads only the upper triangle of `upper`.
 Eigen::MatrixXd solve_upper(const Eigen::MatrixXd& upper, const Eigen::MatrixXd& right);
 
-/// The lower triangle alone of `lower` is read.
+/// Reads only the lower triangle of `lower`.
 Eigen::MatrixXd solve_lower(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& right);
 
 }  // namespace jointid::base

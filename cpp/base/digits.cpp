@@ -12,7 +12,7 @@ namespace jointid::base {
 std::string with_point(std::string_view printed) {
   constexpr std::string_view kKept = "0123456789+-e";
   std::string text;
-  bool inside = false;  // of a mark
+  bool inside = false;  // within a decimal mark
   for (const char each : printed) {
     const bool mark = kKept.find(each) == std::string_view::npos;
     if (!mark) {

@@ -1,8 +1,8 @@
 #pragma once
-// exp, log, sin and cos in plain arithmetic, each within 2 ulp, so that results are the same bits
-// on any host: libm picks other variants by CPU, and no two libms agree in the last bit.
-// Branch-free where a loop must vectorise. Written for double; needs -ffp-contract=off. The series
-// are Taylor's (and atanh's), cut below 1e-17 on the reduced range.
+// exp, log, sin and cos in plain arithmetic, each within 2 ulp. Results have the same bits on any
+// host: libm picks variants by CPU, and no two libms agree in the last bit. Branch-free where a
+// loop must vectorise. Written for double; needs -ffp-contract=off. The series are Taylor's (and
+// atanh's), cut below 1e-17 on the reduced range.
 
 #include <bit>
 #include <cmath>
@@ -18,8 +18,8 @@ inline constexpr double kRound = 6755399441055744.0;
 inline constexpr double kLog2High = 0x1.62e42feep-1;  // 33 bits: k * high is exact for |k| < 2^20
 inline constexpr double kLog2Low = 0x1.a39ef35793c76p-33;  // ln 2 - high
 
-/// What the templates below ask of a type of values beside its arithmetic: their bits as integers,
-/// and one of two values by a mask. For pairs see lanes.hpp.
+/// Operations that the templates below need in addition to arithmetic: the bits of a value as
+/// integers, and a choice between two values by a mask. For pairs see lanes.hpp.
 template <class Value>
 struct Form;
 template <>
@@ -57,7 +57,7 @@ template <class Value>
   p = p * r + 1.0 / 6.0;
   p = p * r + 0.5;
   const Value series = 1.0 + (r + r * r * p);
-  // 2^k in two factors: k = 1024 overflows a single one.
+  // 2^k in two factors, because a single factor overflows at k = 1024.
   const Value scale = F::value((F::bits(shifted) + 1022U) << 52U);
   const Value result = series * scale * 2.0;
   const Value infinite = filled<Value>(std::numeric_limits<double>::infinity());
@@ -72,8 +72,9 @@ inline double exp(double x) {
   return detail::exp(x);
 }
 
-/// e^x for -600 <= x <= 600, within 4 ulp: for sums over many samples, where exp's last bit drowns.
-/// Ten terms, economised from the Chebyshev series over the reduced range, and no special cases.
+/// e^x for -600 <= x <= 600, within 4 ulp. For sums over many samples, in which exp's last bit does
+/// not matter. Ten terms, economised from the Chebyshev series over the reduced range, without
+/// special cases.
 inline double exp_short(double x) {
   const double shifted = x * 0x1.71547652b82fep+0 + detail::kRound;
   const double k = shifted - detail::kRound;
@@ -100,10 +101,10 @@ inline double exp_decay(double y) {
 
 /// Natural logarithm of a positive, finite, normal number: branch-free, for loops.
 inline double log_normal(double x) {
-  // Split so that the mantissa lies in [sqrt(1/2), sqrt(2)): the logarithm is then never a
-  // difference of near equals.
+  // Split so that the mantissa lies in [sqrt(1/2), sqrt(2)). The logarithm is then never a
+  // difference of nearly equal numbers.
   const std::uint64_t offset = std::bit_cast<std::uint64_t>(x) - 0x3fe6a09e667f3bcdULL;
-  // The exponent by the sum that rounds to it: packed 64-bit conversions are rare.
+  // The exponent, by a sum that rounds to it, because packed 64-bit conversions are rare.
   const std::uint64_t biased = ((offset >> 52U) + 2048U) & 4095U;
   const double k = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (0x1p52 + 2048.0);
   const double m = std::bit_cast<double>((offset & 0x000fffffffffffffULL) + 0x3fe6a09e667f3bcdULL);
@@ -141,7 +142,7 @@ namespace detail {
 template <class Value>
 struct Reduced {
   Value r;     // |r| <= pi / 4
-  Value tail;  // what r lost in rounding
+  Value tail;  // rounding error of r
   typename Form<Value>::Bits quadrant;
 };
 
@@ -195,7 +196,8 @@ inline double flip(double value, std::uint64_t negative) {
 
 }  // namespace detail
 
-/// sin x for |x| < 1.6e6 rad (a motor angle stays far below); beyond, the remainder is taken first.
+/// sin x for |x| < 1.6e6 rad (a motor angle stays far below). Larger x are first reduced by the
+/// remainder.
 inline double sin(double x) {
   if (!(std::fabs(x) < 1.6e6)) x = std::remainder(x, 0x1.921fb54442d18p+2);
   const auto [r, tail, quadrant] = detail::reduce(x);
@@ -213,7 +215,8 @@ inline double cos(double x) {
   return detail::flip(value, ((quadrant + 1U) >> 1U) & 1U);
 }
 
-/// x^y for x > 0: exp(y log x). Its error grows with |y log x|; the genetic operators need no more.
+/// x^y for x > 0: exp(y log x). The error grows with |y log x|, which is accurate enough for the
+/// genetic operators.
 inline double pow(double x, double y) {
   return x > 0.0 ? exp(y * log(x)) : 0.0;
 }

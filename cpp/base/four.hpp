@@ -1,7 +1,7 @@
 #pragma once
-// Four doubles side by side, for what compilers leave scalar: the smaller and the larger of two,
-// lanes that live through a loop. All by reference, since vectors as arguments depend on the
-// host's width.
+// Four doubles in parallel, for operations that compilers leave scalar: the smaller and the larger
+// of two, and lanes that are kept through a loop. All arguments are references, because vectors by
+// value depend on the host's width.
 
 #include <array>
 #include <cstddef>
@@ -20,12 +20,12 @@ inline constexpr std::size_t kFour = 4;
 #define JOINTID_WHOLE
 using Four = double __attribute__((vector_size(32)));
 #else
-// Pairs where no function is built for wider vectors: of a vector that the host does not have, gcc
-// makes single numbers wherever one of two is chosen.
+// Pairs where no function is built for wider vectors. If the host lacks a vector, gcc splits it
+// into single numbers at each choice between two.
 using Four = Lanes<2>;
 #endif
 
-/// All of them one value.
+/// Sets all four to one value.
 [[gnu::always_inline]] inline void fill(Four& four, double value) {
   four = Four{value, value, value, value};
 }
@@ -52,7 +52,7 @@ using Four = Lanes<2>;
 #endif
 }
 
-/// result -> where a < b, yes, else no.
+/// result -> yes where a < b, otherwise no.
 [[gnu::always_inline]] inline void choose(const Four& a, const Four& b, const Four& yes,
                                           const Four& no, Four& result) {
 #ifdef JOINTID_WHOLE
@@ -62,7 +62,7 @@ using Four = Lanes<2>;
 #endif
 }
 
-/// Adds 1 in lanes where a is not below b. In doubles: exact, and no change of lanes.
+/// Adds 1 in lanes where a is not below b. Counting in doubles is exact and keeps the lane width.
 [[gnu::always_inline]] inline void count_not_below(const Four& a, const Four& b, Four& count) {
   Four one;
   choose(a, b, Four{}, Four{} + 1.0, one);
@@ -87,7 +87,7 @@ using Four = Lanes<2>;
   return (four[0] + four[1]) + (four[2] + four[3]);
 }
 
-/// sum_of each of four, side by side.
+/// sum_of of four vectors in parallel.
 [[gnu::always_inline]] inline void sums_of(const std::array<Four, kFour>& each, Four& sums) {
 #if defined(JOINTID_WHOLE) && defined(__has_builtin)
 #if __has_builtin(__builtin_shufflevector)
@@ -115,23 +115,23 @@ using Four = Lanes<2>;
 #endif
 }
 
-/// Infinity in the place of what is not above 0.
+/// Replaces values that are not above 0 by infinity.
 [[gnu::always_inline]] inline void leave_out_zeros(Four& four) {
   choose(Four{}, four, four, Four{} + std::numeric_limits<double>::infinity(), four);
 }
 
-/// 0 in the place of what is not above `least`: powers of what stays are no denormals, which take a
-/// hundred times as long.
+/// Replaces values that are not above `least` by 0. Powers of the other values are then no
+/// denormals, which take a hundred times as long.
 [[gnu::always_inline]] inline void leave_out_small(Four& four, double least) {
   choose(Four{} + least, four, four, Four{}, four);
 }
 
-/// least -> the smaller of both.
+/// least -> the smaller of the two.
 [[gnu::always_inline]] inline void lower(Four& least, const Four& other) {
   choose(other, least, other, least, least);
 }
 
-/// most -> the larger of both.
+/// most -> the larger of the two.
 [[gnu::always_inline]] inline void raise(Four& most, const Four& other) {
   choose(most, other, other, most, most);
 }

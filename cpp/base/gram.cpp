@@ -11,7 +11,7 @@ namespace jointid::base {
 
 namespace {
 
-/// products[j] of a column with `count` others, `stride` apart.
+/// products[j] of a column and the j-th of `count` others, which are `stride` apart.
 JOINTID_CLONES void multiply(const double* column, const double* others, std::size_t stride,
                              std::size_t count, std::size_t rows, double* products) {
   inner_products(column, others, stride, count, rows, products);
@@ -21,7 +21,7 @@ JOINTID_CLONES void subtract_column(const double* columns, std::size_t stride,
                                     const double* coefficients, std::size_t count, std::size_t rows,
                                     double* __restrict rest) {
   std::size_t j = 0;
-  for (; j + 4 <= count; j += 4) {  // together, so that the rest is read and written less often
+  for (; j + 4 <= count; j += 4) {  // in one loop, so that the rest is read and written less often
     const double* one = columns + j * stride;
     const double* two = one + stride;
     const double* three = two + stride;
@@ -39,7 +39,7 @@ JOINTID_CLONES void subtract_column(const double* columns, std::size_t stride,
   }
 }
 
-/// A sum of columns, the first four of which are written instead of added to zeros.
+/// A sum of columns. The first four are written instead of added to zeros.
 JOINTID_CLONES void combine(const double* columns, std::size_t stride, const double* c,
                             std::size_t count, std::size_t rows, double* __restrict sum) {
   const double* one = columns;
@@ -57,14 +57,14 @@ JOINTID_CLONES void combine(const double* columns, std::size_t stride, const dou
   }
 }
 
-constexpr std::size_t kTall = 2 * kFour;  // rows whose sums stay in registers, of four columns
+constexpr std::size_t kTall = 2 * kFour;  // rows with sums that stay in registers, for four columns
 
-/// result(r, c) = sum over k of left(r, k) right(k, c), for kTall rows and four columns; `left` has
-/// its rows side by side, kTall apart from k to k.
+/// result(r, c) = sum over k of left(r, k) right(k, c), for kTall rows and four columns. The rows
+/// of `left` are adjacent, kTall apart from k to k + 1.
 [[gnu::always_inline]] inline void tall_block(const double* left, const double* right,
                                               std::size_t depth, std::size_t stride, double* result,
                                               std::size_t rows) {
-  Four a0{}, a1{}, b0{}, b1{}, c0{}, c1{}, d0{}, d1{};  // an array of them would live in memory
+  Four a0{}, a1{}, b0{}, b1{}, c0{}, c1{}, d0{}, d1{};  // an array would live in memory
   const double* one = right;
   const double* two = right + stride;
   const double* three = right + 2 * stride;
@@ -93,7 +93,8 @@ constexpr std::size_t kTall = 2 * kFour;  // rows whose sums stay in registers, 
   store(result + 3 * rows + kFour, d1);
 }
 
-/// A strip of kTall rows by all columns, which are a multiple of four; result has `rows` rows.
+/// A strip of kTall rows by all columns. The number of columns is a multiple of four; result has
+/// `rows` rows.
 JOINTID_CLONES void multiply_strip(const double* left, const double* right, std::size_t depth,
                                    std::size_t stride, std::size_t columns, double* result,
                                    std::size_t rows) {
@@ -111,7 +112,7 @@ Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& left,
   const Eigen::Index whole = right.cols() / 4 * 4;
   const Eigen::Index rest = right.cols() - whole;
   Eigen::MatrixXd result(left.rows(), right.cols());
-  // What does not fill a block is filled up with zeros, in blocks of their own.
+  // Partial blocks are filled up with zeros, in separate buffers.
   Eigen::MatrixXd last = Eigen::MatrixXd::Zero(depth, rest > 0 ? 4 : 0);
   last.leftCols(rest) = right.rightCols(rest);
   Eigen::MatrixXd strip = Eigen::MatrixXd::Zero(kHeight, depth);
@@ -160,7 +161,8 @@ Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
 
 Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                        const Eigen::VectorXd& coefficients) {
-  if (columns.cols() < 4 || columns.cols() >= 8) {  // of eight and more, two times four go together
+  if (columns.cols() < 4 ||
+      columns.cols() >= 8) {  // from eight on, two groups of four are summed together
     Eigen::VectorXd result = Eigen::VectorXd::Zero(columns.rows());
     subtract_sum(columns, -coefficients, result);
     return result;

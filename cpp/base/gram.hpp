@@ -5,8 +5,8 @@
 
 namespace jointid::base {
 
-/// left' right of two matrices of one shape, whose columns' products are symmetric: the lower
-/// triangle is computed, the upper one is its mirror image.
+/// left' right of two matrices of one shape with a symmetric product. The lower triangle is
+/// computed, the upper one is its mirror image.
 Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left,
                                    const Eigen::Ref<const Eigen::MatrixXd>& right);
 
@@ -14,8 +14,8 @@ Eigen::MatrixXd symmetric_products(const Eigen::Ref<const Eigen::MatrixXd>& left
 Eigen::VectorXd products(const Eigen::Ref<const Eigen::MatrixXd>& left,
                          const Eigen::Ref<const Eigen::VectorXd>& right);
 
-/// left right of two matrices of some hundred rows and columns: each sum in the order of left's
-/// columns, whatever the vector width. Eigen's own product has that of the compiler's options.
+/// left right of two matrices of some hundred rows and columns. Each sum is in the order of left's
+/// columns, whatever the vector width; Eigen's own product depends on the compiler's options.
 Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& left,
                         const Eigen::Ref<const Eigen::MatrixXd>& right);
 
@@ -23,7 +23,7 @@ Eigen::MatrixXd product(const Eigen::Ref<const Eigen::MatrixXd>& left,
 Eigen::VectorXd sum_of(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                        const Eigen::VectorXd& coefficients);
 
-/// Takes a sum of columns, each times its coefficient, from `rest`.
+/// Subtracts a sum of columns, each times its coefficient, from `rest`.
 void subtract_sum(const Eigen::Ref<const Eigen::MatrixXd>& columns,
                   const Eigen::VectorXd& coefficients, Eigen::Ref<Eigen::VectorXd> rest);
 

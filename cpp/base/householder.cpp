@@ -13,7 +13,7 @@ namespace jointid::base {
 
 namespace {
 
-/// Reflects column after column of a matrix, stored column by column, onto its triangle.
+/// Reduces a matrix, stored by columns, to its triangle, by one reflection per column.
 JOINTID_CLONES void reflect(double* matrix, std::size_t rows, std::size_t columns) {
   for (std::size_t k = 0; k < std::min(rows, columns); ++k) {
     double* own = matrix + k * rows + k;
@@ -28,7 +28,8 @@ JOINTID_CLONES void reflect(double* matrix, std::size_t rows, std::size_t column
     const double weight = (diagonal - head) / diagonal;
     for (std::size_t i = 1; i <= below; ++i) own[i] *= scale;
     std::size_t j = k + 1;
-    for (; j + 4 <= columns; j += 4) {  // four at a time read the reflection's vector once
+    for (; j + 4 <= columns;
+         j += 4) {  // four columns together, so that the reflection's vector is read once
       double* others = matrix + j * rows + k;
       std::array<double, 4> along;
       four_products(own + 1, others + 1, rows, below, along.data());

@@ -5,8 +5,8 @@
 
 namespace jointid::base {
 
-/// R of the QR decomposition (Golub and Van Loan, 5.2.1); the matrix, which may also be wide, is
-/// used up. As many rows as the smaller of its sizes.
+/// R of the QR decomposition (Golub and Van Loan, 5.2.1). The matrix may also be wide, and is
+/// overwritten. R has as many rows as the smaller dimension of the matrix.
 Eigen::MatrixXd triangle_of(Eigen::MatrixXd& matrix);
 
 }  // namespace jointid::base

@@ -1,5 +1,5 @@
 #pragma once
-// The inner product of two series in eight sums side by side: the same bits at every vector width.
+// The inner product of two series in eight parallel sums: the same bits at every vector width.
 
 #include <array>
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace jointid::base {
 
-/// For functions with JOINTID_CLONES, into whose clones it must be inlined.
+/// For functions with JOINTID_CLONES: it must be inlined into their clones.
 [[gnu::always_inline]] inline double inner_product(const double* a, const double* b,
                                                    std::size_t count) {
   constexpr std::size_t kLanes = 8;
@@ -21,8 +21,8 @@ namespace jointid::base {
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-/// The inner products of a series with four others, `stride` apart: each with the same bits as by
-/// itself, but the one is read once.
+/// The inner products of a series with four others, which are `stride` apart. Each has the same
+/// bits as a single product, but the series is read once.
 [[gnu::always_inline]] inline void four_products(const double* a, const double* others,
                                                  std::size_t stride, std::size_t count,
                                                  double* products) {

@@ -1,6 +1,6 @@
 #pragma once
-// Bad input of the user: an error that says which argument, its value and why it cannot be used.
-// Any other std::invalid_argument is a bug of the caller.
+// Bad input of the user: an error with the argument, its value and the reason. Any other
+// std::invalid_argument is a bug of the caller.
 
 #include <cstdint>
 #include <stdexcept>
@@ -10,13 +10,13 @@
 
 namespace jointid::base {
 
-/// Made out of line: it is thrown in many places and runs in none that matters.
+/// Not inlined: it is thrown in many places, and never in time-critical ones.
 class InputError : public std::invalid_argument {
  public:
   using Value = std::variant<std::monostate, std::int64_t, double, std::string>;
 
-  /// `reason`: why it cannot be used; `argument`: its name, empty if none can be named; `value`:
-  /// what it was, if that says something.
+  /// `reason`: why the value cannot be used; `argument`: its name, empty if there is none; `value`:
+  /// the value, if it helps.
   explicit InputError(std::string reason, std::string argument = {}, Value value = {});
 
   [[nodiscard]] const std::string& reason() const { return reason_; }

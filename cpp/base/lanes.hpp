@@ -1,6 +1,6 @@
 #pragma once
-// Several doubles side by side, so that one source serves one simulation and a batch of them. Each
-// lane does exactly the scalar arithmetic: a lane's bits do not depend on its neighbours.
+// Several doubles in parallel, so that one source serves a single simulation and a batch. Each lane
+// does exactly the scalar arithmetic: a lane's bits do not depend on its neighbours.
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace jointid::base {
 
-// What generic code asks for, for a single number.
+// Operations of generic code, for a single number.
 inline double select(bool mask, double yes, double no) {
   return mask ? yes : no;
 }
@@ -30,7 +30,7 @@ inline double at_least(double x, double low) {
 namespace detail {
 
 #if defined(__GNUC__)
-// Pairs are what every x86-64 and every AArch64 has in one register.
+// Every x86-64 and every AArch64 has a register for a pair.
 using Pair = double __attribute__((vector_size(16)));
 using PairMask = decltype(Pair{} < Pair{});
 inline Pair pick(PairMask mask, Pair yes, Pair no) {
@@ -122,7 +122,9 @@ struct Lanes {
   std::array<detail::Pair, Pairs> pair;
 
   Lanes() : Lanes(0.0) {}
-  Lanes(double same) { pair.fill(detail::both(same)); }  // a number among lanes stands for all
+  Lanes(double same) {
+    pair.fill(detail::both(same));
+  }  // a number among lanes has the same value in all lanes
 
   Lanes(double a, double b, double c, double d)
     requires(Pairs == 2)
@@ -193,7 +195,7 @@ namespace detail {
 
 using Bits = unsigned long long __attribute__((vector_size(16)));
 
-// The series of base/elementary.hpp two at a time: the same operations, the same bits.
+// The series of base/elementary.hpp for two values: the same operations, the same bits.
 template <>
 struct Form<Pair> {
   using Bits = detail::Bits;
@@ -202,13 +204,13 @@ struct Form<Pair> {
   static Pair choose(PairMask mask, Pair yes, Pair no) { return pick(mask, yes, no); }
 };
 
-/// sin (0) or cos (1) of |x| < 1.6e6, by how many quarter turns it is ahead of the sine.
+/// sin (`ahead` 0) or cos (1) of |x| < 1.6e6; `ahead` is the lead over the sine in quarter turns.
 inline Pair sine(Pair x, unsigned long long ahead) {
   const auto reduced = reduce(x);
   const Bits quadrant = reduced.quadrant + ahead;
   const Bits odd = quadrant & 1ULL;
   Pair value;
-  if (odd[0] == odd[1]) {  // most often: one series serves both
+  if (odd[0] == odd[1]) {  // usual case: one series serves both
     value = odd[0] != 0 ? cos_series(reduced.r, reduced.tail) : sin_series(reduced.r, reduced.tail);
   } else {
     value =
@@ -274,7 +276,7 @@ Lanes<P> pow(const Lanes<P>& x, const Lanes<P>& y) {
   return result;
 }
 
-/// One lane of a number, whatever it is.
+/// One lane of a number or of lanes.
 inline double lane(double x, std::size_t) {
   return x;
 }

@@ -10,11 +10,12 @@ namespace jointid::base {
 namespace {
 
 constexpr double kRootOfTwoPi = 2.5066282746310002;
-constexpr double kSeries = 2.0;  // below, the series about 0; beyond, Laplace's continued fraction
+constexpr double kSeries = 2.0;  // below: the series about 0; beyond: Laplace's continued fraction
 constexpr int kFraction = 160;   // its depth: 1e-16 at kSeries
-constexpr double kShifted = 16.0;  // asymptotic series hold to the last bit from here
+constexpr double kShifted = 16.0;  // from here on, asymptotic series are accurate to the last bit
 constexpr int kSteps = 60;
-constexpr double kNear = 1e-10;  // a step so small squares to nothing: Newton's last
+constexpr double kNear =
+    1e-10;  // with a step this small, Newton's method has converged: its square is below rounding
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
@@ -33,7 +34,7 @@ double from_centre(double x) {
 
 double log_one_plus(double x) {
   const double one = 1.0 + x;
-  // What the sum lost to rounding is made good (Kahan).
+  // Adds the rounding error of the sum back (Kahan).
   return one == 1.0 ? x : base::log(one) * (x / (one - 1.0));
 }
 
@@ -60,7 +61,7 @@ double stirling_rest(double a) {
 }
 
 double normal_density(double x) {
-  // The square in two parts: of the whole, an ulp would be 1e-13 of the density far out.
+  // The square in two parts: an ulp of the whole square would be 1e-13 of the density far out.
   const double head = std::floor(x * 16.0) / 16.0;
   return base::exp(-0.5 * head * head) * base::exp(-0.5 * (x - head) * (x + head)) / kRootOfTwoPi;
 }
@@ -78,7 +79,7 @@ double normal_quantile(double tail) {
   if (!(tail >= 0.0 && tail <= 1.0)) return kNan;
   if (tail > 0.5) return -normal_quantile(1.0 - tail);
   if (tail == 0.0) return kInfinity;
-  if (tail > 0.25) {  // near 0 the distance from the centre is what is known to the last bit
+  if (tail > 0.25) {  // near 0 the distance from the centre is known to the last bit
     const double centre = 0.5 - tail;
     double x = centre * kRootOfTwoPi;
     for (int step = 0; step < kSteps; ++step) {
@@ -104,8 +105,8 @@ double covering_half_width(double probability, double offset) {
   if (!(probability > 0.0 && probability < 1.0) || !(offset == offset)) return kNan;
   const double outside = 1.0 - probability;
   const double distance = std::fabs(offset);
-  // From below: the farther tail alone is not more than all that is outside, and the curve is
-  // convex.
+  // Newton's method starts from below: the farther tail alone is at most the whole probability
+  // outside, and the curve is convex.
   double width = distance + std::fmax(normal_quantile(outside), 0.0);
   for (int step = 0; step < kSteps; ++step) {
     const double beyond = normal_tail(width - distance) + normal_tail(width + distance) - outside;

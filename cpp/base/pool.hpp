@@ -1,5 +1,5 @@
 #pragma once
-// Threads for one call: made when there is work for them, joined by the destructor, so nothing
+// Threads for one call. They start when there is work and the destructor joins them, so nothing
 // outlives the call (fork stays safe).
 
 #include <condition_variable>
@@ -14,29 +14,30 @@
 
 namespace jointid::base {
 
-/// Called by the waiting thread at least every 20 ms; it throws to end the work (Ctrl-C).
+/// The waiting thread calls it at least every 20 ms. It throws to end the work (Ctrl-C).
 using Poll = std::function<void()>;
 
 /// Splits index ranges over worker threads while the calling thread polls.
 ///
-/// The calling thread never works itself: that is what lets one long evaluation be interrupted.
-/// `work` must give a result per index that depends on the index only; then the number of threads
-/// cannot change any bit.
+/// The calling thread never works, so that one long evaluation can be interrupted. The result of
+/// `work` for an index must depend on that index only. Then the number of threads cannot change any
+/// bit.
 class Pool {
  public:
-  /// threads = 0: as many as the hardware has. An empty poll is allowed.
+  /// threads = 0: one per thread of the hardware. An empty poll is allowed.
   explicit Pool(int threads, Poll poll = {});
   ~Pool();
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
   [[nodiscard]] int threads() const { return static_cast<int>(wanted_); }
-  /// Work hands this to whatever runs long.
+  /// The flag that long work checks.
   [[nodiscard]] const Cancel& cancel() const { return cancel_; }
-  /// Ask the poll now (between generations); throws what the poll throws.
+  /// Calls the poll now (between generations); throws what the poll throws.
   void poll();
-  /// Calls work(begin, end) for chunks that cover [0, count); returns when all are done; rethrows
-  /// the first exception. A chunk of 0 is chosen; give 1 where indices differ much in their work.
+  /// Calls work(begin, end) for chunks that cover [0, count). Returns when all are done, and
+  /// rethrows the first exception. chunk = 0 chooses a size; use 1 where the work differs much
+  /// between indices.
   void for_each(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work,
                 std::size_t chunk = 0);
 

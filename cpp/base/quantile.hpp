@@ -1,6 +1,6 @@
 #pragma once
-// Exact quantiles without sorting or copying the whole: a sample tells where the wanted rank lies,
-// one pass counts what is below and keeps the few values near it.
+// Exact quantiles without sorting or copying all values. A sample gives a range around the wanted
+// rank. One pass counts the values below the range and keeps the few inside it.
 
 #include <algorithm>
 #include <array>
@@ -16,10 +16,10 @@ namespace jointid::base {
 namespace quantile_detail {
 
 constexpr std::size_t kSample = 1024;
-constexpr std::size_t kCopied = 4096;  // so few are copied and partitioned as they are
-constexpr double kMargin = 0.06;       // share of the sample either side of the wanted rank
-constexpr std::size_t kFew = 256;      // values looked at together
-constexpr std::size_t kBlock = 65536;  // values between two looks at the cancel flag
+constexpr std::size_t kCopied = 4096;  // up to this number, all are copied and partitioned
+constexpr double kMargin = 0.06;       // share of the sample on either side of the wanted rank
+constexpr std::size_t kFew = 256;      // values per inner loop
+constexpr std::size_t kBlock = 65536;  // values between two checks of the cancel flag
 
 inline double between(double first, double second, double share) {
   return share == 0.0 ? first : first + share * (second - first);
@@ -27,9 +27,9 @@ inline double between(double first, double second, double share) {
 
 }  // namespace quantile_detail
 
-/// The quantile `q` (0 to 1, linear between neighbours; 0.5 is the median) of the values that
-/// `value(i, out)` gives for i < count and for which it returns true, none of them NaN; `kept` is
-/// their number. 0 without any.
+/// The quantile `q` (0 to 1, linear between neighbours; 0.5 is the median) of values without NaN.
+/// `value(i, out)` writes value i < count and returns whether it counts; `kept` is the number of
+/// those that count. 0 if there is none.
 template <class Value>
 double quantile(std::size_t count, std::size_t kept, double q, Value value,
                 const Cancel* cancel = nullptr) {
@@ -41,7 +41,7 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
   double one = 0.0;
   std::vector<double> near;
   if (kept > kCopied) {
-    // Strides of changing length: a motion that repeats must not show the same phase each time.
+    // Strides of changing length, so that a repeated motion does not show the same phase each time.
     const std::size_t stride = std::max<std::size_t>(1, count / (kSample * 2));
     std::uint64_t state = 88172645463325252ULL;
     for (std::size_t begin = 0; begin + stride <= count; begin += stride) {
@@ -61,7 +61,8 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
       std::size_t at_low = 0;
       std::size_t at_high = 0;
       near.clear();
-      std::array<double, kFew> between_both;  // each value is written, few stay: without a branch
+      std::array<double, kFew>
+          between_both;  // without a branch: each value is written, few are kept
       for (std::size_t begin = 0; begin < count;) {
         if (cancel != nullptr && begin % kBlock == 0) cancel->check();
         const std::size_t end = std::min(count, begin + kFew);
@@ -76,10 +77,10 @@ double quantile(std::size_t count, std::size_t kept, double q, Value value,
         }
         near.insert(near.end(), between_both.data(), between_both.data() + found);
       }
-      if (low == high) at_high = 0;  // they are counted already
+      if (low == high) at_high = 0;  // they are already counted
       const std::size_t reached = below + at_low + near.size() + at_high;
       if (rank >= below && rank + 1 < reached) {
-        const std::size_t ends = below + at_low;  // values up to `low`
+        const std::size_t ends = below + at_low;  // number of values up to `low`
         const std::size_t inner = near.size();
         if (rank >= ends && rank < ends + inner) {
           const Ranked found = at_rank(near.data(), inner, rank - ends);

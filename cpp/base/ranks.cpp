@@ -8,14 +8,15 @@ namespace jointid::base {
 
 namespace {
 
-constexpr std::size_t kFew = 24;  // that are sorted
-constexpr int kMostRounds = 64;   // of an order that defeats every pivot the rest is sorted, too
+constexpr std::size_t kFew = 24;  // up to this number, values are sorted
+constexpr int kMostRounds = 64;   // if an order defeats every pivot, the rest is sorted
 
 double middle_of(double a, double b, double c) {
   return std::max(std::min(a, b), std::min(std::max(a, b), c));
 }
 
-/// Those below the pivot to the front, those above it to the end; what is left between are equals.
+/// Moves values below the pivot to the front and values above it to the end. Only equal values are
+/// left between.
 struct Sides {
   std::size_t below;
   std::size_t above;
@@ -25,7 +26,7 @@ Sides partition(const double* values, std::size_t count, double pivot, double* t
   std::size_t back = count - 1;
   for (std::size_t i = 0; i < count; ++i) {
     const double value = values[i];
-    to[front] = value;  // to both ends; what does not belong there is written over
+    to[front] = value;  // written to both ends; the wrong copy is overwritten
     to[back] = value;
     front += value < pivot ? 1U : 0U;
     back -= value > pivot ? 1U : 0U;
@@ -36,11 +37,11 @@ Sides partition(const double* values, std::size_t count, double pivot, double* t
 }  // namespace
 
 Ranked at_rank(const double* values, std::size_t count, std::size_t rank) {
-  // Not set to zero before: a partition writes what the next one reads.
+  // Not set to zero: a partition writes all values that the next one reads.
   const std::unique_ptr<double[]> scratch(count > kFew ? new double[2 * count] : nullptr);
   double* to = scratch.get();
   double* other = to == nullptr ? nullptr : to + count;
-  double above = 0.0;  // the smallest value above those that are left
+  double above = 0.0;  // the smallest value above the remaining ones
   bool is_last = true;
   const auto next_of = [&](double last) { return is_last ? last : above; };
   for (int round = 0; count > kFew && round < kMostRounds; ++round) {

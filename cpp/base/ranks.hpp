@@ -5,17 +5,17 @@
 
 namespace jointid::base {
 
-/// A value of some rank, and that of the next rank: the same where there is none.
+/// The value of some rank, and the value of the next rank (the same value if there is none).
 struct Ranked {
   double value;
   double next;
 };
 
-/// The value of rank `rank` (0: the smallest) of `count` values, which stay as they are; count >
-/// rank, and none of them is NaN.
+/// The value of rank `rank` (0: the smallest) of `count` values, which are not changed. count >
+/// rank, and no value is NaN.
 ///
-/// A partition in which no branch depends on a value: of values in any order std::nth_element
-/// guesses every second branch wrong, which takes three times as long.
+/// No branch of the partition depends on a value. With values in random order, std::nth_element
+/// mispredicts every second branch, which takes three times as long.
 Ranked at_rank(const double* values, std::size_t count, std::size_t rank);
 
 }  // namespace jointid::base

@@ -1,5 +1,6 @@
 #pragma once
-// Refuses a number that cannot be used: whose it is, which, what it is, and the limit.
+// Refuses a number that cannot be used. The message has its owner, its name, its value and the
+// limit.
 
 #include <cmath>
 #include <string>

@@ -137,7 +137,7 @@ JOINTID_CLONES double largest_rate(const double* time, const double* x, std::siz
 
 JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::size_t places) {
   Four high;
-  Four deep;  // apart, so that neither waits for the other
+  Four deep;  // separate, so that neither waits for the other
   fill(high, 0.0);
   fill(deep, 0.0);
   std::size_t i = 0;
@@ -148,7 +148,7 @@ JOINTID_CLONES double largest_height(const double* x, std::size_t width, std::si
     load(middle, x + i + width);
     load(there, x + i);
     load(back, x + i + 2 * width);
-    Four low = there;  // of a sample below both, the distance from the lower one
+    Four low = there;  // for a sample below both, the distance from the lower one
     lower(low, back);
     subtract(low, middle);
     raise(deep, low);

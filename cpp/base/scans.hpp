@@ -1,6 +1,6 @@
 #pragma once
-// Extremes over the samples of a signal, several samples side by side: what passes over a whole
-// recording ask for first. Any order of the samples gives the same bits.
+// Extremes over the samples of a signal, several samples in parallel. Passes over a whole recording
+// start with them. Any order of the samples gives the same bits.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,41 +11,41 @@ struct Range {
   double low;
   double high;
 };
-/// Of at least one sample.
+/// Range of at least one sample.
 Range range_of(const double* x, std::size_t count);
 
 struct Least {
   double any;       ///< infinite without a sample
-  double positive;  ///< of those that are not 0; infinite without one
+  double positive;  ///< smallest size that is not 0; infinite if there is none
 };
 /// The smallest sizes |x|.
 Least least_sizes(const double* x, std::size_t count);
 /// The smallest sizes of `steps` steps from one sample to the next.
 Least least_steps(const double* x, std::size_t steps);
 
-/// What a signal's samples and the steps between them are like.
+/// Facts about a signal's samples and the steps between them.
 struct Survey {
   Range range;
-  double smallest;       ///< of the steps that are not 0; infinite without one
-  std::int64_t changes;  ///< steps that are not 0
+  double smallest;       ///< smallest step that is not 0; infinite if there is none
+  std::int64_t changes;  ///< number of steps that are not 0
 };
-/// Of `steps` + 1 samples.
+/// Survey of `steps` + 1 samples.
 Survey survey(const double* x, std::size_t steps);
 
-/// Samples `width` apart from their neighbours on both sides, on the same side of both: the largest
-/// distance from the nearer one, at `places` places; 0 without one.
+/// The largest height of a sample above or below both samples `width` apart, as the distance from
+/// the nearer one. `places` samples are examined; 0 if none is on one side of both.
 double largest_height(const double* x, std::size_t width, std::size_t places);
 
-/// The largest |x[k + width] - x[k]| over the time between both, k < count; 0 without one.
+/// The largest |x[k + width] - x[k]| over the time between the two, k < count; 0 without one.
 double largest_rate(const double* time, const double* x, std::size_t width, std::size_t count);
 
-/// How many of `count` finite samples, at least one, have the first one's sign; 0 where that one
-/// is 0.
+/// The number of samples, from the first on, with the sign of the first one; 0 if the first one is
+/// 0. `count` finite samples, at least one.
 std::size_t one_sided(const double* x, std::size_t count);
 
-/// Whether no sample is infinite or no number.
+/// Whether every sample is a finite number.
 bool all_finite(const double* x, std::size_t count);
-/// Whether each of `steps` steps is upwards; of finite samples.
+/// Whether each of `steps` steps is upwards; the samples must be finite.
 bool increases(const double* x, std::size_t steps);
 
 }  // namespace jointid::base

@@ -8,8 +8,8 @@ namespace jointid::base {
 
 namespace {
 
-constexpr double kOrthogonal = 2.2e-16;  // cosine that is left to two columns, of a single row
-constexpr int kSweeps = 60;              // a dozen do
+constexpr double kOrthogonal = 2.2e-16;  // remaining cosine of two columns, per row
+constexpr int kSweeps = 60;              // a dozen suffice
 
 void turn(Eigen::MatrixXd& matrix, Eigen::Index one, Eigen::Index other, double cosine,
           double sine) {

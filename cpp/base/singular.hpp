@@ -6,12 +6,12 @@
 namespace jointid::base {
 
 struct Singular {
-  Eigen::VectorXd values;      ///< the largest first; as many as the matrix has columns
-  Eigen::MatrixXd directions;  ///< a column each
+  Eigen::VectorXd values;      ///< the largest first; one per column of the matrix
+  Eigen::MatrixXd directions;  ///< one per column
 };
 
-/// By one-sided Jacobi rotations (Hestenes 1958), which keep small singular values of columns of
-/// unlike size to full relative accuracy.
+/// One-sided Jacobi rotations (Hestenes 1958). They keep small singular values to full relative
+/// accuracy, also with columns of very different size.
 Singular singular(Eigen::MatrixXd matrix);
 
 }  // namespace jointid::base

@@ -13,13 +13,14 @@ namespace {
 constexpr double kPi = 3.141592653589793;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kNormal = 1e20;  // degrees of freedom: no bit of the quantile differs from here
+constexpr double kNormal =
+    1e20;  // degrees of freedom: from here on, no bit of the quantile changes
 constexpr double kCentral = 3.0;  // t^2: below, the series about 0
 constexpr int kTerms = 20000;
 constexpr int kSteps = 100;
 constexpr double kSettled = 4e-16;
 
-/// Student's t with some degrees of freedom, right of 0.
+/// Student's t with these degrees of freedom, right of 0.
 class Student {
  public:
   explicit Student(double freedom)
@@ -82,7 +83,7 @@ class Student {
  private:
   [[nodiscard]] double border() const { return std::fmin(kCentral, freedom_); }
 
-  /// How deep the continued fraction is to be evaluated: as Laplace's.
+  /// Depth of the continued fraction: as for Laplace's.
   [[nodiscard]] static int depth(double t) {
     return 20 + static_cast<int>(400.0 / std::fmax(1.0, std::fmin(t * t, 100.0)));
   }
@@ -93,11 +94,11 @@ class Student {
   double density_;
 };
 
-/// Beyond which `tail` <= 1/2 lies. Both curves are concave, so that Newton's method closes in from
-/// one side.
+/// The value beyond which `tail` <= 1/2 lies. Both curves are concave, so Newton's method converges
+/// from one side.
 double right_of_zero(const Student& student, double tail) {
   if (tail == 0.0) return kInfinity;
-  if (tail > 0.25) {  // here the distance from the centre is what is known to the last bit
+  if (tail > 0.25) {  // here the distance from the centre is known to the last bit
     const double centre = 0.5 - tail;
     double t = centre / student.density_at_zero();
     for (int step = 0; step < kSteps && t > 0.0; ++step) {
@@ -118,8 +119,8 @@ double right_of_zero(const Student& student, double tail) {
   return base::exp(logarithm);
 }
 
-/// ln of x^a e^-x / Gamma(a), without the cancellation of large terms; `log_of_x` also where x is
-/// 0.
+/// ln of x^a e^-x / Gamma(a), without the cancellation of large terms. `log_of_x` is also valid
+/// where x underflows to 0.
 double log_gamma_density(double a, double x, double log_of_x) {
   const double mean = (x - a) / a;
   const double logarithm = mean < -0.5 ? log_of_x - base::log(a) : log_one_plus(mean);
@@ -173,7 +174,7 @@ double chi_square_quantile(double tail, double freedom) {
   const double a = 0.5 * freedom;
   const bool upper = tail <= 0.5;
   const double target = base::log(upper ? tail : 1.0 - tail);
-  // Wilson and Hilferty; where that is negative, the first term of the series.
+  // Wilson and Hilferty; if the result is negative, the first term of the series.
   const double cube = 1.0 - 1.0 / (9.0 * a) + normal_quantile(tail) / (3.0 * std::sqrt(a));
   double logarithm = base::log(a) + 3.0 * base::log(cube);
   if (cube < 0.3) {

@@ -3,12 +3,12 @@
 
 namespace jointid::base {
 
-/// Below which `probability` of Student's t lies; degrees of freedom above 0, whole or not, also
-/// infinite. Infinite for 0 and 1, NaN for what is neither.
+/// The value below which Student's t lies with `probability`. The degrees of freedom are above 0,
+/// whole or not, or infinite. Infinite for 0 and 1, NaN outside [0, 1].
 double student_quantile(double probability, double freedom);
 
-/// Beyond which `tail` of chi-square lies; degrees of freedom above 0. Infinite for 0, 0 for 1, NaN
-/// for what is neither.
+/// The value beyond which chi-square lies with probability `tail`. The degrees of freedom are above
+/// 0. Infinite for 0, 0 for 1, NaN outside [0, 1].
 double chi_square_quantile(double tail, double freedom);
 
 }  // namespace jointid::base

@@ -1,5 +1,5 @@
 #pragma once
-// What all bindings share: the include set, and the way back into Python during long work.
+// Shared by all bindings: the includes, and the return into Python during long work.
 
 #include <Python.h>
 #include <pybind11/eigen.h>
@@ -20,7 +20,7 @@ namespace jointid::bind {
 
 namespace py = pybind11;
 
-/// Raises the package's InputError; a value of null is not shown.
+/// Raises the package's InputError. A null value is not shown.
 [[noreturn]] void refuse(const std::string& reason, const std::string& argument,
                          const py::handle& value = {});
 

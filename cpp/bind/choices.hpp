@@ -1,5 +1,5 @@
 #pragma once
-// Choices with names cross the border as their words: selection="roulette".
+// Enumerations pass between C++ and Python as words: selection="roulette".
 
 #include "base/choices.hpp"
 #include "bind/bind.hpp"

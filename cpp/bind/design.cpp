@@ -28,39 +28,44 @@ Column column(const std::string& key, int shape, double coefficient, double freq
 }
 
 void bind_values(py::module_& m) {
-  value(m, "MotionBounds", "What the reference of a designed motion is held within.",
-        Field{"lowest", &Bounds::lowest, "Position [rad]."},
-        Field{"highest", &Bounds::highest, "Position [rad]."},
+  value(m, "MotionBounds", "Bounds on the reference of a designed motion.",
+        Field{"lowest", &Bounds::lowest, "Lowest position [rad]."},
+        Field{"highest", &Bounds::highest, "Highest position [rad]."},
         Field{"velocity", &Bounds::velocity, "[rad/s]"},
         Field{"acceleration", &Bounds::acceleration, "[rad/s²]"},
-        Field{"torque", &Bounds::torque, "Of the drive [N·m]."},
-        Field{"inertia", &Bounds::inertia, "Largest that the prior allows [kg·m²]."},
-        Field{"viscous", &Bounds::viscous, "The same [N·m·s/rad]."},
-        Field{"dry", &Bounds::dry, "The same, dry friction and load [N·m]."});
+        Field{"torque", &Bounds::torque, "Torque of the drive [N·m]."},
+        Field{"inertia", &Bounds::inertia, "Largest inertia that the prior allows [kg·m²]."},
+        Field{"viscous", &Bounds::viscous,
+              "Largest viscous friction that the prior allows [N·m·s/rad]."},
+        Field{"dry", &Bounds::dry,
+              "Largest sum of dry friction and load that the prior allows [N·m]."});
   value(m, "MotionFamily", "Sums of sines that start and end at rest.",
-        Field{"sines", &Family::sines, "How many."}, Field{"duration", &Family::duration, "[s]"},
-        Field{"fade", &Family::fade, "Time over which they grow and shrink [s]."},
-        Field{"slowest", &Family::slowest, "Frequency [rad/s]."},
-        Field{"fastest", &Family::fastest, "Frequency [rad/s]."},
-        Field{"bounds", &Family::bounds, "What the reference is held within."});
-  value(m, "HeldLimits", "What the joints themselves are held within.",
-        Field{"lowest", &Held::lowest, "Position [rad]."},
-        Field{"highest", &Held::highest, "Position [rad]."},
+        Field{"sines", &Family::sines, "Number of sines."},
+        Field{"duration", &Family::duration, "[s]"},
+        Field{"fade", &Family::fade, "Time over which the sines fade in and out [s]."},
+        Field{"slowest", &Family::slowest, "Lowest frequency [rad/s]."},
+        Field{"fastest", &Family::fastest, "Highest frequency [rad/s]."},
+        Field{"bounds", &Family::bounds, "Bounds on the reference."});
+  value(m, "HeldLimits", "Limits that the joints themselves must keep.",
+        Field{"lowest", &Held::lowest, "Lowest position [rad]."},
+        Field{"highest", &Held::highest, "Highest position [rad]."},
         Field{"velocity", &Held::velocity, "[rad/s]"},
         Field{"acceleration", &Held::acceleration, "[rad/s²]"},
-        Field{"torque", &Held::torque, "Of the drive [N·m]."},
-        Field{"link_torque", &Held::link_torque, "At the torque sensor [N·m]."});
-  value(m, "BalanceNoise", "Noise of the torque balance, and what an identification leaves out.",
-        Field{"torque", &Noise::torque, "Of a sample, white [N·m]."},
-        Field{"position", &Noise::position, "At a window's end [rad]."},
-        Field{"velocity", &Noise::velocity, "At a window's end [rad/s]."},
-        Field{"slowest", &Noise::slowest, "Slower samples tell nothing [rad/s]."},
-        Field{"reversal", &Noise::reversal, "Of a window with a change of sign [N·m·s]."},
-        Field{"sampled", &Noise::sampled, "Between samples of the recording [s]."});
+        Field{"torque", &Held::torque, "Torque of the drive [N·m]."},
+        Field{"link_torque", &Held::link_torque, "Torque at the torque sensor [N·m]."});
+  value(m, "BalanceNoise",
+        "Noise of the torque balance, and the samples that an identification leaves out.",
+        Field{"torque", &Noise::torque, "White noise of one sample [N·m]."},
+        Field{"position", &Noise::position, "Error at a window's end [rad]."},
+        Field{"velocity", &Noise::velocity, "Error at a window's end [rad/s]."},
+        Field{"slowest", &Noise::slowest, "Slower samples are left out [rad/s]."},
+        Field{"reversal", &Noise::reversal,
+              "Error of a window in which the velocity changes sign [N·m·s]."},
+        Field{"sampled", &Noise::sampled, "Time between samples of the recording [s]."});
 }
 
 void bind_results(py::module_& m) {
-  py::class_<Column>(m, "BalanceColumn", "What a free parameter does to the torque balance.")
+  py::class_<Column>(m, "BalanceColumn", "Column of a free parameter in the torque balance.")
       .def(py::init(&column), py::kw_only(), py::arg("key"), py::arg("shape") = -1,
            py::arg("coefficient") = 0.0, py::arg("frequency") = 0.0,
            py::arg("shapes") = std::vector<double>{});
@@ -78,24 +83,26 @@ void bind_results(py::module_& m) {
            }),
            py::kw_only(), py::arg("setup"), py::arg("columns"), py::arg("noise"), py::arg("scale"),
            py::arg("weight"), py::arg("known"), py::arg("inertia"), py::arg("viscous"))
-      .def_readonly("weight", &Drawn::weight, "1: asked for, 0: not.");
-  py::class_<Judgement>(m, "MotionJudgement", "What a motion is worth for one joint.")
+      .def_readonly("weight", &Drawn::weight, "1 for a requested parameter, 0 for any other.");
+  py::class_<Judgement>(m, "MotionJudgement", "Value of a motion for one joint.")
       .def_readonly("errors", &Judgement::errors, "Expected errors (RMS) over their scales.")
-      .def_readonly("bias", &Judgement::bias, "The part of them that each recording shows.")
-      .def_readonly("information", &Judgement::information, "Of this motion alone.")
-      .def_readonly("lowest", &Judgement::lowest, "Position that the joint reaches [rad].")
-      .def_readonly("highest", &Judgement::highest, "Position that the joint reaches [rad].")
+      .def_readonly("bias", &Judgement::bias,
+                    "The part of `errors` that is the same in every recording.")
+      .def_readonly("information", &Judgement::information, "Information of this motion alone.")
+      .def_readonly("lowest", &Judgement::lowest, "Lowest position that the joint reaches [rad].")
+      .def_readonly("highest", &Judgement::highest,
+                    "Highest position that the joint reaches [rad].")
       .def_readonly("velocity", &Judgement::velocity, "[rad/s]")
       .def_readonly("acceleration", &Judgement::acceleration, "[rad/s²]")
-      .def_readonly("torque", &Judgement::torque, "Of the drive [N·m].")
-      .def_readonly("link_torque", &Judgement::link_torque, "At the sensor [N·m].")
+      .def_readonly("torque", &Judgement::torque, "Torque of the drive [N·m].")
+      .def_readonly("link_torque", &Judgement::link_torque, "Torque at the sensor [N·m].")
       .def_readonly("excess", &Judgement::excess,
-                    "Largest share by which a limit is exceeded; 0: none.");
+                    "Largest excess over a limit, as a share of the limit; 0: none.");
 }
 
 void bind_excitation(py::module_& m) {
   using Function = std::optional<py::function>;
-  py::class_<Excitation>(m, "Excitation", "Judges motions, and searches for the best.")
+  py::class_<Excitation>(m, "Excitation", "Judge motions and search for the best one.")
       .def(py::init([](const Family& family, const simulate::Scenario& scenario,
                        std::vector<Drawn> joints, const Held& held, Criterion criterion,
                        int window) {
@@ -106,7 +113,7 @@ void bind_excitation(py::module_& m) {
       .def_property_readonly("joints", &Excitation::joints)
       .def_property_readonly(
           "genes", [](const Excitation& self) { return self.family().genes(); },
-          "How many numbers make a motion.")
+          "Number of genes that define a motion.")
       .def(
           "judge",
           [](const Excitation& self, const simulate::Trajectory& trajectory) {
@@ -118,7 +125,7 @@ void bind_excitation(py::module_& m) {
                 1);
             return found;
           },
-          py::arg("trajectory"), "One judgement a joint.")
+          py::arg("trajectory"), "Return one judgement per joint.")
       .def(
           "motion",
           [](const Excitation& self, const Eigen::VectorXd& genes) {
@@ -132,7 +139,7 @@ void bind_excitation(py::module_& m) {
             arguments["duration"] = sines.duration;
             return arguments;
           },
-          py::arg("genes"), "Arguments of Trajectory.multisine.")
+          py::arg("genes"), "Return the arguments of Trajectory.multisine.")
       .def(
           "leave_out",
           [](Excitation& self, const Eigen::MatrixXd& candidates, double largest, int threads) {
@@ -141,8 +148,8 @@ void bind_excitation(py::module_& m) {
             self.leave_out(candidates, largest, pool);
           },
           py::arg("candidates"), py::kw_only(), py::arg("largest"), py::arg("threads") = 0,
-          "Leave out, for each joint, what none of these motions determines to within "
-          "`largest`.")
+          "Leave out, for each joint, the parameters that none of these motions determines to "
+          "within `largest`.")
       .def(
           "search",
           [](const Excitation& self, const search::GaOptions& options, std::uint64_t seed,
@@ -162,7 +169,7 @@ void bind_excitation(py::module_& m) {
           },
           py::kw_only(), py::arg("options"), py::arg("seed") = 0, py::arg("trial") = 0,
           py::arg("threads") = 0, py::arg("callback") = py::none(),
-          "Genetic search for the motion of the smallest cost.");
+          "Genetic search for the motion with the smallest cost.");
 }
 
 }  // namespace

@@ -22,41 +22,46 @@ using Array = SharedRecording::Array;
 
 void bind_diagnose(py::module_& m) {
   py::native_enum<SpikeRule>(m, "SpikeRule", "enum.Enum",
-                             "What a spike of a signal is held against.")
+                             "Reference that a signal's spikes are compared with.")
       .value("position", SpikeRule::position)
       .value("command", SpikeRule::command)
       .value("other", SpikeRule::other)
       .finalize();
   py::class_<Limit>(m, "Limit", "Samples at one of a signal's extremes.")
-      .def_readonly("there", &Limit::there, "On it.")
-      .def_readonly("moving", &Limit::moving, "On it while the joint moves.")
-      .def_readonly("near", &Limit::near, "Within 1 % of the range, those on it too.");
-  py::class_<SignalFacts>(m, "SignalFacts", "What a single signal shows by itself.")
+      .def_readonly("there", &Limit::there, "Samples at the extreme.")
+      .def_readonly("moving", &Limit::moving, "Samples at the extreme while the joint moves.")
+      .def_readonly("near", &Limit::near,
+                    "Samples within 1 % of the range, including those at the extreme.");
+  py::class_<SignalFacts>(m, "SignalFacts", "Facts about a single signal, without a model.")
       .def_property_readonly("lowest", [](const SignalFacts& f) { return f.range.lowest; })
       .def_property_readonly("highest", [](const SignalFacts& f) { return f.range.highest; })
-      .def_readonly("fine", &SignalFacts::fine, "The usual step is at least 30 smallest ones.")
-      .def_readonly("changes", &SignalFacts::changes, "Steps that are not zero.")
-      .def_readonly("smallest", &SignalFacts::smallest, "The smallest of those; infinite: none.")
+      .def_readonly("fine", &SignalFacts::fine,
+                    "Whether the usual step is at least 30 times the smallest one.")
+      .def_readonly("changes", &SignalFacts::changes, "Number of steps that are not zero.")
+      .def_readonly("smallest", &SignalFacts::smallest,
+                    "Smallest step that is not zero; infinite if there is none.")
       .def_readonly("lower", &SignalFacts::lower)
       .def_readonly("upper", &SignalFacts::upper)
       .def_readonly("moving", &SignalFacts::moving, "Intervals at a fair speed.")
-      .def_readonly("stale", &SignalFacts::stale, "Of those: no step, and not on a limit.")
-      .def_readonly("frozen", &SignalFacts::frozen, "Of those: in long runs.");
+      .def_readonly("stale", &SignalFacts::stale,
+                    "Intervals among `moving` without a step and not at an extreme.")
+      .def_readonly("frozen", &SignalFacts::frozen,
+                    "Intervals among `moving` in long runs without a step.");
   py::class_<Spike>(m, "Spike", "The largest spike of a signal.")
       .def_readonly("height", &Spike::height)
       .def_readonly("index", &Spike::index)
-      .def_readonly("count", &Spike::count, "0: none.");
+      .def_readonly("count", &Spike::count, "Number of spikes; 0: none.");
   py::class_<diagnose::Agreement>(
       m, "Agreement", "position change = scale * integrated velocity + lag * velocity change.")
       .def_readonly("scale", &diagnose::Agreement::scale)
       .def_readonly("lag", &diagnose::Agreement::lag, "[s]")
       .def_readonly("lag_error", &diagnose::Agreement::lag_error, "[s]");
-  py::class_<Inspection>(m, "Inspection", "What a recording shows by itself.")
+  py::class_<Inspection>(m, "Inspection", "Facts about a recording, without a model.")
       .def_readonly("peak_speed", &Inspection::peak_speed)
-      .def_readonly("facts", &Inspection::facts, "One a channel.")
-      .def_readonly("spikes", &Inspection::spikes, "One a channel.")
+      .def_readonly("facts", &Inspection::facts, "Facts of each channel.")
+      .def_readonly("spikes", &Inspection::spikes, "Largest spike of each channel.")
       .def_readonly("jump", &Inspection::jump,
-                    "The sample before a jump of the position; -1: none.")
+                    "Index of the sample before a jump of the position; -1: none.")
       .def_readonly("agreement", &Inspection::agreement)
       .def_property_readonly(
           "swing", [](const Inspection& i) { return i.position.highest - i.position.lowest; })
@@ -66,7 +71,7 @@ void bind_diagnose(py::module_& m) {
             return std::make_pair(i.timing.as_stamped, i.timing.as_uniform);
           },
 
-          "Scatter of the samples' times about the stamps and about an even grid [s].");
+          "Scatter of the sampling times about the time stamps and about an even grid [s].");
   m.def(
       "inspect",
       [](const Array& time, const Array& position, const Array& velocity, bool velocity_derived,
@@ -88,7 +93,7 @@ void bind_diagnose(py::module_& m) {
       py::kw_only(), py::arg("time"), py::arg("position"), py::arg("velocity"),
       py::arg("velocity_derived"), py::arg("period"), py::arg("channels"), py::arg("threads") = 0,
 
-      "Look at a recording's signals; a channel is a signal, its rule, and whether to look for "
+      "Examine a recording's signals. Each channel has a signal, its rule, and whether to look for "
       "spikes.");
   m.def(
       "ripple",
@@ -107,8 +112,8 @@ void bind_diagnose(py::module_& m) {
       py::kw_only(), py::arg("recordings"), py::arg("terms"), py::arg("windows"),
       py::arg("residual"), py::arg("mask_standstill"), py::arg("gear_ratio"),
       py::arg("per_recording"), py::arg("theta"), py::arg("halves"), py::arg("threads") = 0,
-      "Of short windows: their number, the sum of squared mean residuals, and the "
-      "magnitude of their sum over each half multiple of the motor's angle.");
+      "Return the number of short windows, the sum of their squared mean residuals, and the "
+      "magnitude of their sum at each half multiple of the motor's angle.");
 }
 
 }  // namespace jointid::bind

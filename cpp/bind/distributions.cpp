@@ -6,14 +6,14 @@ namespace jointid::bind {
 
 void bind_distributions(py::module_& m) {
   m.def("student_quantile", &base::student_quantile, py::arg("probability"), py::arg("freedom"),
-        "Below which this probability of Student's t lies.");
+        "Return the value below which Student's t lies with this probability.");
   m.def("chi_square_quantile", &base::chi_square_quantile, py::arg("tail"), py::arg("freedom"),
-        "Beyond which this probability of chi-square lies.");
+        "Return the value beyond which chi-square lies with this probability.");
   m.def("covering_half_width", &base::covering_half_width, py::arg("probability"),
         py::arg("offset"),
 
-        "Half the width of the symmetric interval that holds a normal variable of this mean and "
-        "deviation 1.");
+        "Return half the width of the symmetric interval that covers a normal variable with mean "
+        "`offset` and standard deviation 1 with this probability.");
 }
 
 }  // namespace jointid::bind

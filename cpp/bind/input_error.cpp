@@ -6,8 +6,7 @@ namespace jointid::bind {
 
 namespace {
 
-/// Sets Python's error; the class is imported when it is needed, because its package imports this
-/// module.
+/// Sets Python's error. The class is imported only here, because its package imports this module.
 void set_error(const std::string& reason, const std::string& argument, const py::handle& value) {
   const py::object error = py::module_::import("jointid.base.errors").attr("InputError");
   py::dict keywords;
@@ -36,7 +35,7 @@ void refuse(const std::string& reason, const std::string& argument, const py::ha
 }
 
 void bind_input_error() {
-  // Other exceptions of the core are bugs, and pass on to pybind11's own translators.
+  // Other exceptions of the core are bugs. They pass on to pybind11's own translators.
   py::register_local_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);

@@ -9,14 +9,15 @@ using identify::SlidingPenalty;
 
 void bind_online(py::module_& m) {
   py::class_<MotionScale>(m, "MotionScale",
-                          "Scale of a motion, which the mask compares speeds with.")
+                          "Scale of a motion, with which the mask compares speeds.")
       .def(py::init([](SharedRecording& recording) {
              const py::gil_scoped_release nogil;
              return identify::motion_scale(recording.view());
            }),
            py::arg("recording"))
       .def_readonly("peak", &MotionScale::peak, "Largest speed.")
-      .def_readonly("travel", &MotionScale::travel, "From the lowest position to the highest.")
+      .def_readonly("travel", &MotionScale::travel,
+                    "Distance from the lowest position to the highest.")
       .def_property_readonly("moves", &MotionScale::moves)
       .def_property_readonly(
           "memory", &MotionScale::memory,
@@ -29,9 +30,9 @@ void bind_online(py::module_& m) {
             .duration;
       },
       py::arg("recording"), py::arg("parameters"), py::arg("mask_standstill"),
-      "The duration of a window that the velocity's noise asks for [s].");
+      "Duration of a window that the velocity's noise requires [s].");
   py::class_<SlidingPenalty>(m, "SlidingPenalty",
-                             "The penalty over the last seconds of a motion that goes on.")
+                             "The penalty over the last seconds of a continuing motion.")
       .def(py::init([](std::vector<std::string> terms, identify::Residual residual,
                        double gear_ratio, double window_duration, bool mask_standstill,
                        const MotionScale& scale, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -50,7 +51,7 @@ void bind_online(py::module_& m) {
           py::arg("samples"), py::arg("begin"), py::arg("end"),
           py::call_guard<py::gil_scoped_release>(),
 
-          "Digest the sample intervals begin to end - 1; the other samples are context.")
+          "Add the sample intervals begin to end - 1 to the digest; the other samples are context.")
       .def("forget", &SlidingPenalty::forget, py::arg("time"),
            "Drop the stretches that end no later than this time [s].")
       .def("compressed", &SlidingPenalty::compressed, py::call_guard<py::gil_scoped_release>(),
@@ -67,9 +68,9 @@ void bind_online(py::module_& m) {
             }
             return py::make_tuple(residual.squaredNorm(), std::move(residual), std::move(jacobian));
           },
-          py::arg("theta"), "Penalty, window residuals and derivatives, by the direct sum.")
+          py::arg("theta"), "Return penalty, window residuals and derivatives, by the direct sum.")
       .def("total", &SlidingPenalty::total, py::arg("coefficient"),
-           "Sum of a constant column over all windows.")
+           "Return the sum of a constant column over all windows.")
       .def_property_readonly("window_count", &SlidingPenalty::window_count)
       .def_property_readonly("usable_duration", &SlidingPenalty::usable_duration,
                              "Integrated time of all windows [s].")

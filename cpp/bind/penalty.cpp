@@ -18,22 +18,23 @@ using identify::WindowOptions;
 
 void bind_penalty(py::module_& m) {
   py::native_enum<Residual>(m, "Residual", "enum.Enum",
-                            "What a window's residual is compared with.")
+                            "Signal with which a window's residual is formed.")
       .value("sensor", Residual::sensor)
       .value("torque", Residual::torque)
       .value("instruments", Residual::instruments)
       .finalize();
   py::class_<PenaltyFunction>(m, "PenaltyFunction",
-                              "What every form of the penalty offers to a search.")
+                              "Interface of every form of the penalty for a search.")
       .def(
           "__call__",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) { return p(theta); },
-          py::arg("theta"), py::call_guard<py::gil_scoped_release>(), "Sum of squared residuals.")
+          py::arg("theta"), py::call_guard<py::gil_scoped_release>(),
+          "Return the sum of squared residuals.")
       .def(
           "evaluate",
           [](const PenaltyFunction& p, const Eigen::MatrixXd& candidates, int threads) {
             if (candidates.rows() != p.parameters()) {
-              throw std::invalid_argument("candidates must have one row a parameter, " +
+              throw std::invalid_argument("candidates must have one row per parameter, " +
                                           std::to_string(p.parameters()) + ", got " +
                                           std::to_string(candidates.rows()));
             }
@@ -44,7 +45,7 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("candidates"), py::kw_only(), py::arg("threads") = 0,
           py::call_guard<py::gil_scoped_release>(),
-          "Penalties of many candidates, one a column, shape (parameters, count).")
+          "Return the penalties of many candidates, one per column, shape (parameters, count).")
       .def(
           "residuals",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
@@ -52,7 +53,7 @@ void bind_penalty(py::module_& m) {
             p.residuals(theta, residual, nullptr);
             return residual;
           },
-          py::arg("theta"), "Residuals, one a row.")
+          py::arg("theta"), "Return the residuals, one per row.")
       .def(
           "jacobian",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
@@ -61,7 +62,7 @@ void bind_penalty(py::module_& m) {
             p.residuals(theta, residual, &jacobian);
             return jacobian;
           },
-          py::arg("theta"), "Derivatives of the residuals, shape (rows, parameters).")
+          py::arg("theta"), "Return the derivatives of the residuals, shape (rows, parameters).")
       .def(
           "columns",
           [](const PenaltyFunction& p, const Eigen::VectorXd& shapes) {
@@ -69,7 +70,7 @@ void bind_penalty(py::module_& m) {
             p.columns(shapes, columns);
             return columns;
           },
-          py::arg("shapes"), "Columns of all coefficients, shape (rows, coefficients).")
+          py::arg("shapes"), "Return the columns of all coefficients, shape (rows, coefficients).")
       .def(
           "linear_columns",
           [](const PenaltyFunction& p, const Eigen::VectorXd& theta) {
@@ -78,30 +79,32 @@ void bind_penalty(py::module_& m) {
             p.linear_columns(theta.tail(theta.size() - c), theta.head(c), columns);
             return columns;
           },
-          py::arg("theta"), "Columns of the balance made linear there, shape (rows, coefficients).")
+          py::arg("theta"),
+          "Return the columns of the balance linearised at theta, shape (rows, coefficients).")
       .def_property_readonly("is_linear", &PenaltyFunction::is_linear,
                              "Whether the balance is linear in the coefficients for given shapes.")
       .def_property_readonly("target", &PenaltyFunction::target,
-                             "What the columns add up to [N m s], one a row.")
+                             "Sum that the columns must reach [N m s], one entry per row.")
       .def_property_readonly("names", &PenaltyFunction::names)
       .def_property_readonly("coefficients", &PenaltyFunction::coefficients)
       .def_property_readonly("residual", &PenaltyFunction::residual);
   using identify::FirstStage;
   py::class_<FirstStage>(m, "FirstStage",
-                         "The sensor's reading, explained by the motion of a rigid link.")
+                         "Fit of the sensor's reading by the motion of a rigid link.")
       .def_readonly("acceleration", &FirstStage::acceleration,
-                    "Whether the velocity change is among the instruments; it is left out where "
+                    "Whether the velocity change is among the instruments. It is left out where "
                     "gravity suffices.")
       .def_readonly("strength", &FirstStage::strength,
-                    "F statistic of the link's columns beyond those of the balance.")
+                    "F statistic of the link's columns in addition to those of the balance.")
       .def_readonly("share", &FirstStage::share,
-                    "Share of the reading's square without its mean that only they explain.")
-      .def_property_readonly("weak", &FirstStage::weak,
-                             "Whether they explain too little for an estimate of the gain.");
+                    "Share of the reading's variance that only the link's columns explain.")
+      .def_property_readonly(
+          "weak", &FirstStage::weak,
+          "Whether the link's columns explain too little for an estimate of the gain.");
   py::class_<Penalty, PenaltyFunction>(
       m, "Penalty",
 
-      "The integral penalty of recordings and terms, by the direct sum; a row is a window.")
+      "The integral penalty of recordings and terms, by the direct sum. Each row is a window.")
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
@@ -132,9 +135,9 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("theta"),
 
-          "Penalty, window residuals with the reading itself, and the derivatives of the "
-          "penalty's "
-          "residuals, in one pass: what the sandwich of an estimate's covariance is made of.")
+          "Return, in one pass, the penalty, the window residuals with the reading itself, and the "
+          "derivatives of the penalty's residuals. The sandwich covariance of an estimate is "
+          "computed from them.")
       .def(
           "balance_at",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -149,7 +152,8 @@ void bind_penalty(py::module_& m) {
             return std::make_tuple(penalty, std::move(residual), std::move(jacobian),
                                    std::move(columns));
           },
-          py::arg("theta"), "The same, and what `columns` returns at its shapes.")
+          py::arg("theta"),
+          "Return the same as `linearised`, and the columns at the shapes of theta.")
       .def(
           "residuals",
           [](const Penalty& p, const Eigen::VectorXd& theta) {
@@ -159,7 +163,7 @@ void bind_penalty(py::module_& m) {
             p.observe(theta, residual);
             return residual;
           },
-          py::arg("theta"), "Residuals of the windows, with the reading itself.")
+          py::arg("theta"), "Return the residuals of the windows, with the reading itself.")
       .def(
           "columns",
           [](const Penalty& p, const Eigen::VectorXd& shapes) {
@@ -171,8 +175,8 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("shapes"),
 
-          "Window integrals of all coefficients, shape (windows, coefficients), of the reading "
-          "itself.")
+          "Return the window integrals of all coefficients, with the reading itself, shape "
+          "(windows, coefficients).")
       .def_property_readonly("reading", &Penalty::reading,
                              "Window integrals of the sensor's reading. Only with a gain.")
       .def(
@@ -185,13 +189,12 @@ void bind_penalty(py::module_& m) {
             });
           },
           py::arg("free"), py::kw_only(), py::arg("threads") = 0,
-          "Replace the gain's column by the part of the reading that the motion "
-          "explains; `free` "
-          "are the parameters that vary. Only with the residual 'instruments', which "
-          "is that of "
-          "the torque before.")
-      .def_property_readonly("first_stage", &Penalty::first_stage,
-                             "How the motion explains the reading; None if it is not projected.")
+          "Replace the gain's column by the part of the reading that the motion explains. `free` "
+          "are the free parameters. Only with the residual 'instruments', which is the residual of "
+          "the torque until then.")
+      .def_property_readonly(
+          "first_stage", &Penalty::first_stage,
+          "Fit of the reading by the motion; None if the reading is not projected.")
       .def(
           "torque_steps",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill) {
@@ -199,7 +202,7 @@ void bind_penalty(py::module_& m) {
             return p.torque_steps(all_masked(recordings, mask_standstill, nullptr));
           },
           py::arg("recordings"), py::arg("mask_standstill"),
-          "How far the torque rises over each window's usable intervals.")
+          "Return the rise of the torque over each window's usable intervals.")
       .def(
           "link_motion",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill,
@@ -214,14 +217,12 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("recordings"), py::arg("mask_standstill"), py::arg("periods"), py::arg("slow"),
 
-          "How a rigid link moves in each window, shape (window_count, 11): how much faster it "
-          "becomes; cosine and sine of the angle in its middle, times the integrated time; "
-          "that "
-          "time; how far the torque rises over the usable intervals, times the recording's "
-          "period "
-          "in `periods`; friction of one size, viscous, and fading with the speed over `slow`; "
-          "the integrals of the torque and of the reading; the time from first to last "
-          "sample.")
+          "Motion of a rigid link in each window, shape (window_count, 11). Columns: the velocity "
+          "change; cosine and sine of the angle in the middle, times the integrated time; that "
+          "time; the rise of the torque over the usable intervals, times the recording's period in "
+          "`periods`; friction that is constant, that is viscous, and that decays with the speed "
+          "over `slow`; the integrals of the torque and of the reading; the time from first to "
+          "last sample.")
       .def(
           "bending",
           [](const Penalty& p, const Recordings& recordings, bool mask_standstill,
@@ -231,7 +232,8 @@ void bind_penalty(py::module_& m) {
           },
           py::arg("recordings"), py::arg("mask_standstill"), py::arg("theta"),
 
-          "What the windows' friction lacks because the trapezoid rule takes it as straight.")
+          "Return the window integrals of friction that the trapezoidal rule misses, because it "
+          "takes friction as straight between samples.")
       .def_property_readonly("terms", &Penalty::terms, "The term of each coefficient.")
       .def_property_readonly("cumulative", &Penalty::cumulative)
       .def_property_readonly("window_count", &Penalty::window_count)
@@ -239,13 +241,14 @@ void bind_penalty(py::module_& m) {
                              "First and last sample of each window, shape (window_count, 2).")
       .def_property_readonly(
           "recording_of",
-          [](const Penalty& p) {  // an array: a list is made and read number by number
+          [](const Penalty&
+                 p) {  // An array, because a list would be built and read number by number.
             const std::vector<int>& run = p.recording_of();
             return Eigen::Matrix<std::int64_t, Eigen::Dynamic, 1>(
                 Eigen::Map<const Eigen::VectorXi>(run.data(), static_cast<Eigen::Index>(run.size()))
                     .cast<std::int64_t>());
           },
-          "Which recording each window belongs to, shape (window_count,).")
+          "Index of the recording of each window, shape (window_count,).")
       .def_property_readonly("usable_duration", &Penalty::usable_duration,
                              "Integrated time of each window [s].")
       .def_property_readonly("window_duration",
@@ -269,16 +272,20 @@ void bind_penalty(py::module_& m) {
            }),
            py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(),
            py::arg("threads") = 0, py::call_guard<py::gil_scoped_release>())
-      .def_property_readonly("exact", &CompressedPenalty::exact,
-                             "Whether it meets the tolerance; else use the direct sum.")
-      .def_property_readonly("reason", &CompressedPenalty::reason, "Why not; empty if it does.")
+      .def_property_readonly(
+          "exact", &CompressedPenalty::exact,
+          "Whether the penalty meets the tolerance; otherwise use the direct sum.")
+      .def_property_readonly("reason", &CompressedPenalty::reason,
+                             "Reason if the tolerance is not met; empty otherwise.")
       .def_property_readonly("passes", &CompressedPenalty::passes,
-                             "Shapes at which the samples were summed.")
-      .def_property_readonly("error", &CompressedPenalty::error,
-                             "Largest error found between those, of the columns' squared size.");
+                             "Number of shapes at which the samples were summed.")
+      .def_property_readonly(
+          "error", &CompressedPenalty::error,
+          "Largest error between those shapes, as a share of the columns' squared norm.");
   using identify::PenaltyParts;
   py::class_<PenaltyParts>(
-      m, "PenaltyParts", "A penalty that is summed part by part, for what needs it once or twice.")
+      m, "PenaltyParts",
+      "A penalty that is summed part by part, for callers that need it once or twice.")
       .def(py::init([](const Recordings& recordings, const std::vector<std::string>& terms,
                        const WindowOptions& windows, Residual residual, bool mask_standstill,
                        double gear_ratio, const std::vector<std::string>& per_recording,
@@ -305,7 +312,7 @@ void bind_penalty(py::module_& m) {
             });
           },
           py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
-          py::arg("threads") = 0, "The minimum within bounds near a start.");
+          py::arg("threads") = 0, "Return the minimum within bounds near a start.");
 }
 
 }  // namespace jointid::bind

@@ -1,13 +1,13 @@
-// What picks a clone for wider vectors (base/clones.hpp) when the extension is loaded, in wheels:
-// zig's runtime library has a stub of it, which finds the oldest processor everywhere. An
-// identify() then takes 1.4 times as long.
-// It runs while the extension is relocated: it calls nothing outside of it.
+// Chooses a clone for wider vectors (base/clones.hpp) when the extension of a wheel is loaded.
+// zig's runtime library has only a stub of this function, which finds the oldest processor
+// everywhere; an identify() then takes 1.4 times as long.
+// The function runs while the extension is relocated, so it calls nothing outside of it.
 
 #if defined(__x86_64__) && defined(JOINTID_ZIG)
 
 namespace {
 
-/// As the compiler reads it: of the features, in their order there, only AVX2 is asked for.
+/// Layout as the compiler reads it. Of the features, in the compiler's order, only AVX2 is used.
 struct Model {
   unsigned vendor;
   unsigned type;
@@ -29,13 +29,13 @@ Registers ask(unsigned leaf) {
   return found;
 }
 
-/// Whether the processor has AVX2 and the kernel keeps its registers.
+/// Whether the processor has AVX2 and the kernel saves its registers.
 bool has_avx2() {
   constexpr unsigned kFeatures = 1;
   constexpr unsigned kMoreFeatures = 7;
   constexpr unsigned kAvxAndKept =
-      1U << 28U | 1U << 27U;                         // features, c: AVX; what is kept is known
-  constexpr unsigned kHalves = 1U << 1U | 1U << 2U;  // of the vector registers
+      1U << 28U | 1U << 27U;                         // features, c: AVX; saved registers are known
+  constexpr unsigned kHalves = 1U << 1U | 1U << 2U;  // halves of the vector registers
   constexpr unsigned kWide = 1U << 5U;               // more features, b: AVX2
   if (ask(0).a < kMoreFeatures || (ask(kFeatures).c & kAvxAndKept) != kAvxAndKept) return false;
   unsigned kept = 0;

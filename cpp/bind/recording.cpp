@@ -70,13 +70,13 @@ std::shared_ptr<const MaskedRecording> SharedRecording::masked(bool mask_standst
 }
 
 void bind_recording(py::module_& m) {
-  py::native_enum<Hold>(m, "Hold", "enum.Enum", "The torque signal between samples.")
+  py::native_enum<Hold>(m, "Hold", "enum.Enum", "Course of the torque signal between samples.")
       .value("zero_order", Hold::zero_order)
       .value("linear", Hold::linear)
       .finalize();
   using Array = SharedRecording::Array;
   py::class_<SharedRecording, std::shared_ptr<SharedRecording>>(
-      m, "Recording", "Signals of one run; arrays of floats are kept, not copied.")
+      m, "Recording", "Signals of one run. Arrays of floats are kept, not copied.")
       .def(py::init([](Array time, Array position, Array velocity, Array torque,
                        std::optional<Array> sensor, Hold torque_hold,
                        std::vector<std::int64_t> gap_after, double min_speed,
@@ -93,7 +93,7 @@ void bind_recording(py::module_& m) {
            py::arg("torque"), py::arg("sensor"), py::arg("torque_hold"), py::arg("gap_after"),
            py::arg("min_speed") = 0.0, py::arg("doubtful") = std::vector<std::int64_t>{},
            py::arg("own") = std::vector<std::pair<std::string, Array>>{},
-           "own: key of an own term and its integral from the first sample to each.")
+           "own: key of each own term, and its integral from the first sample to each sample.")
       .def_property_readonly("samples", &SharedRecording::samples);
   m.def(
       "usable_intervals",
@@ -109,17 +109,16 @@ void bind_recording(py::module_& m) {
       },
       py::arg("recording"), py::arg("mask_standstill") = true,
 
-      "One flag per sample interval: 1 where the joint moves and the recording has no gap.");
-  value(
-      m, "WindowOptions",
-      "How to cut a recording into windows: a number, a duration, or neither (chosen from the "
-      "noise).",
-      Field{"count", &WindowOptions::count, "Number of windows; 0: not given."},
-      Field{"duration", &WindowOptions::duration, "Length of a window [s]; 0: not given."},
-      Field{"factor", &WindowOptions::factor, "Multiplies the duration, however chosen."},
-      Field{
-          "cumulative", &WindowOptions::cumulative,
-          "Compare running integrals at the windows' ends (thesis's MATLAB), not each window's."});
+      "Return one flag per sample interval: 1 where the joint moves and the recording has no gap.");
+  value(m, "WindowOptions",
+        "How to cut a recording into windows: by a number, by a duration, or by neither (then the "
+        "noise decides).",
+        Field{"count", &WindowOptions::count, "Number of windows; 0: not set."},
+        Field{"duration", &WindowOptions::duration, "Length of a window [s]; 0: not set."},
+        Field{"factor", &WindowOptions::factor, "Factor on the duration, however it was chosen."},
+        Field{"cumulative", &WindowOptions::cumulative,
+              "Compare running integrals at the windows' ends (thesis's MATLAB) instead of each "
+              "window's integral."});
 }
 
 }  // namespace jointid::bind

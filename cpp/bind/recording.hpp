@@ -1,6 +1,6 @@
 #pragma once
-// A recording as Python hands it over: views of its arrays, which are kept alive, and the mask,
-// found when first asked for.
+// A recording as Python passes it: views of its arrays, which are kept alive, and the mask, which
+// is computed on first use.
 
 #include <pybind11/numpy.h>
 
@@ -18,10 +18,10 @@
 
 namespace jointid::bind {
 
-/// Below, a pool costs more than it saves, and Ctrl-C comes soon enough without.
+/// With fewer samples a pool costs more than it saves, and Ctrl-C acts soon enough without it.
 constexpr std::int64_t kManySamples = 200000;
 
-/// Calls work with a pool that looks for Ctrl-C where there are many samples, else with null.
+/// Calls work with a pool that checks for Ctrl-C if there are many samples, otherwise with null.
 template <class Work>
 auto with_pool(std::int64_t samples, int threads, Work work) {
   if (samples < kManySamples) return work(static_cast<base::Pool*>(nullptr));
@@ -43,7 +43,7 @@ class SharedRecording {
                   std::vector<std::pair<std::string, Array>> own = {});
   [[nodiscard]] const identify::RecordingView& view() const { return view_; }
   [[nodiscard]] std::int64_t samples() const { return view_.samples(); }
-  /// Found once for each choice; called without the GIL.
+  /// Computed once for each choice. Call it without the GIL.
   [[nodiscard]] std::shared_ptr<const identify::MaskedRecording> masked(bool mask_standstill,
                                                                         base::Pool* pool);
 

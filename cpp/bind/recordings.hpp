@@ -1,5 +1,5 @@
 #pragma once
-// The recordings of one problem as Python hands them over.
+// The recordings of one problem as Python passes them.
 
 #include <cstdint>
 #include <memory>

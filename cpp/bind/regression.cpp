@@ -29,7 +29,7 @@ void bind_regression(py::module_& m) {
                          [&](base::Pool* pool) { return identify::triangle(matrix, pool); });
       },
       py::arg("matrix"), py::kw_only(), py::arg("threads") = 0,
-      "R of the QR decomposition of a tall matrix.");
+      "Return R of the QR decomposition of a tall matrix.");
   m.def(
       "box_minima",
       [](const Rows& square, const Rows& gradient, const Eigen::VectorXd& lower,
@@ -52,7 +52,7 @@ void bind_regression(py::module_& m) {
         return found;
       },
       py::arg("square"), py::arg("gradient"), py::arg("lower"), py::arg("upper"),
-      "The minima of quadratic functions inside a box: (n, p, p) and (n, p) to (n, p).");
+      "Return the minima of quadratic functions inside a box: (n, p, p) and (n, p) to (n, p).");
   m.def(
       "solve_independent",
       [](const Matrix& triangle, const std::vector<Eigen::Index>& columns, Eigen::Index target) {
@@ -63,9 +63,8 @@ void bind_regression(py::module_& m) {
         return identify::solve_independent(triangle, columns, target);
       },
       py::arg("triangle"), py::arg("columns"), py::arg("target"),
-      "Coefficients of columns for another one, and the norm of what they leave; None "
-      "unless they "
-      "are clearly independent.");
+      "Return the coefficients of columns for the target column, and the norm of the remainder. "
+      "None unless the columns are clearly independent.");
   using identify::Cuts;
   m.def(
       "covariance",
@@ -96,7 +95,7 @@ void bind_regression(py::module_& m) {
                                std::move(found.weakest));
       },
       py::arg("jacobian"), py::arg("residual"), py::arg("triangle"), py::arg("cuts"),
-      py::arg("centre"), "The fields of a `Covariance`, in their order.");
+      py::arg("centre"), "Return the fields of a `Covariance`, in their order.");
   using Series = Eigen::Ref<const Eigen::VectorXd>;
   m.def(
       "motion_cuts",
@@ -105,7 +104,7 @@ void bind_regression(py::module_& m) {
         if (stop.size() != start.size() || travel.size() != start.size() || edges.empty() ||
             !std::is_sorted(edges.begin(), edges.end(), std::less_equal<>()) || edges.front() < 0 ||
             edges.back() > start.size() || !(length > 0.0)) {
-          throw std::invalid_argument("edges must part the windows of the recordings");
+          throw std::invalid_argument("edges must divide the windows into recordings");
         }
         const identify::MovingWindows windows{start, stop, travel};
         std::vector<std::int64_t> cuts{edges.front()};
@@ -116,10 +115,10 @@ void bind_regression(py::module_& m) {
         return cuts;
       },
       py::arg("start"), py::arg("stop"), py::arg("travel"), py::arg("edges"), py::arg("length"),
-      "First windows of the segments of motion, and the end of the last one; `edges` "
-      "are the first "
-      "windows of the recordings, and the end of the last one.");
-  py::class_<identify::Folds>(m, "Folds", "Cross-validated least squares on any of many columns.")
+      "Return the first windows of the segments of motion, and the end of the last segment. "
+      "`edges` are the first windows of the recordings, and the end of the last recording.");
+  py::class_<identify::Folds>(m, "Folds",
+                              "Cross-validated least squares on any subset of many columns.")
       .def(py::init([](const Rows& rows, const std::vector<std::int64_t>& edges) {
              if (rows.ndim() != 2 || rows.shape(1) < 1 || edges.size() < 2 ||
                  !std::is_sorted(edges.begin(), edges.end()) || edges.front() < 0 ||
@@ -131,7 +130,8 @@ void bind_regression(py::module_& m) {
            py::arg("rows"), py::arg("edges"), "The last column is the target.")
       .def("misfit", &identify::Folds::misfit, py::arg("columns"),
 
-           "Sum of squares left in each block, with these columns fitted to the other blocks.");
+           "Return the sum of squared residuals of each block, with these columns fitted to the "
+           "other blocks.");
 }
 
 }  // namespace jointid::bind

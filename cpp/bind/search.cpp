@@ -23,15 +23,16 @@ search::ResidualFunction residual_function(const PenaltyFunction& penalty, const
 
 void bind_search(py::module_& m) {
   bind_genetic(m);
-  py::class_<identify::SeparableResult>(m, "SeparableResult", "The separable optimum.")
+  py::class_<identify::SeparableResult>(m, "SeparableResult", "Result of the separable search.")
       .def_readonly("best", &identify::SeparableResult::best)
       .def_readonly("penalty", &identify::SeparableResult::penalty)
       .def_readonly("evaluations", &identify::SeparableResult::evaluations);
-  py::class_<identify::Projected>(m, "Projected", "The projected search's optimum, if any.")
+  py::class_<identify::Projected>(m, "Projected",
+                                  "Optimum of the projected search, if there is one.")
       .def_readonly("found", &identify::Projected::found)
       .def_readonly("reason", &identify::Projected::reason,
                     "Why nothing was found; empty otherwise.");
-  py::class_<search::PolishResult>(m, "PolishResult", "A local optimum.")
+  py::class_<search::PolishResult>(m, "PolishResult", "Result of a local search.")
       .def_readonly("best", &search::PolishResult::best)
       .def_readonly("penalty", &search::PolishResult::penalty)
       .def_readonly("iterations", &search::PolishResult::iterations)
@@ -59,7 +60,7 @@ void bind_search(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::kw_only(), py::arg("threads") = 0,
 
-      "The separable optimum by a dozen direct sums; nothing where that is not safe.");
+      "Return the separable optimum by a dozen direct sums, or nothing where that is not safe.");
   m.def(
       "refine_separable",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -71,8 +72,8 @@ void bind_search(py::module_& m) {
       },
       py::arg("penalty"), py::arg("lower"), py::arg("upper"), py::arg("start"), py::kw_only(),
       py::arg("everywhere") = true, py::arg("threads") = 0,
-      "The local optimum near a start; `everywhere` also searches the free shapes' "
-      "whole ranges.");
+      "Return the local optimum near a start. `everywhere` also searches the whole ranges of the "
+      "free shapes.");
   m.def(
       "polish",
       [](const PenaltyFunction& penalty, Eigen::VectorXd lower, Eigen::VectorXd upper,
@@ -102,8 +103,8 @@ void bind_search(py::module_& m) {
       py::arg("penalty"), py::kw_only(), py::arg("recordings"), py::arg("terms"),
       py::arg("mask_standstill"), py::arg("gear_ratio"), py::arg("per_recording"), py::arg("lower"),
       py::arg("upper"), py::arg("best"), py::arg("threads") = 0,
-      "The minima with each window halved and with neighbours joined in pairs; None "
-      "where there are no such windows.");
+      "Return the minima with each window halved, and with neighbours joined in pairs. None where "
+      "there are no such windows.");
 }
 
 }  // namespace jointid::bind

@@ -1,4 +1,4 @@
-// What the search for delays computes sample by sample.
+// The computations per sample of the search for delays.
 
 #include <pybind11/eigen.h>
 
@@ -19,7 +19,7 @@ using Array = SharedRecording::Array;
 using Indices = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 using Flags = py::array_t<bool, py::array::c_style | py::array::forcecast>;
 
-/// Smooth windows, with the arrays that their stretch is a view of.
+/// Smooth windows, with the arrays that their stretch views.
 struct WindowsOfArrays {
   Array time;
   Array position;
@@ -44,7 +44,7 @@ struct WindowsOfArrays {
   [[nodiscard]] signals::EvenStretch stretch() const {
     return {signal_of(time), signal_of(position), signal_of(velocity), usable.data(), derived};
   }
-  /// A signal of the same samples.
+  /// A view of a signal with the same number of samples.
   [[nodiscard]] signals::Signal own(const Array& values) const {
     if (values.size() != time.size()) throw std::invalid_argument("signals must have one length");
     return signal_of(values);
@@ -58,7 +58,7 @@ ShiftRows rows_of(const Windows& windows, const std::vector<Array>& signals,
                   bool held) {
   ShiftRows rows{{}, columns, conservative, held};
   if (windows.empty() || windows.size() != signals.size()) {
-    throw std::invalid_argument("each stretch needs its signal");
+    throw std::invalid_argument("each stretch needs one signal");
   }
   Eigen::Index used = 0;
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -67,7 +67,7 @@ ShiftRows rows_of(const Windows& windows, const std::vector<Array>& signals,
     used += static_cast<Eigen::Index>(each.windows.used.size());
   }
   if (used != columns.rows() || columns.cols() < 1 || conservative > columns.cols()) {
-    throw std::invalid_argument("columns need a row for each window that is used");
+    throw std::invalid_argument("columns need one row for each used window");
   }
   return rows;
 }
@@ -92,13 +92,13 @@ void bind_shifts(py::module_& m) {
             const auto& used = of.windows.used;
             return py::array_t<std::int64_t>(static_cast<py::ssize_t>(used.size()), used.data());
           },
-          "Middle samples of the windows that are used.")
+          "Middle samples of the used windows.")
       .def(
           "rates",
           [](const WindowsOfArrays& of, const Array& values) {
             return signals::mean_rates(of.own(values), of.windows);
           },
-          py::arg("signal"), "Mean rate of a signal in each window.")
+          py::arg("signal"), "Return the mean rate of a signal in each window.")
       .def(
           "columns",
           [](const WindowsOfArrays& of, const Array& cosine, const Array& sine, bool varying,
@@ -115,15 +115,17 @@ void bind_shifts(py::module_& m) {
           py::arg("cosine"), py::arg("sine"), py::kw_only(), py::arg("varying"),
           py::arg("friction"), py::arg("own") = std::vector<Array>{},
           py::arg("own_friction") = std::vector<Array>{}, py::arg("jumping") = py::none(),
-          py::arg("answer") = 0.0, "What a torque or a reading may be a sum of; a row a window.");
-  py::class_<signals::FittedShift>(m, "FittedShift", "A shift, with its standard error [s].")
+          py::arg("answer") = 0.0,
+          "Return the columns that can explain a torque or a reading, one row per window.");
+  py::class_<signals::FittedShift>(m, "FittedShift", "A time shift, with its standard error [s].")
       .def_readonly("whole", &signals::FittedShift::whole)
       .def_readonly("conservative", &signals::FittedShift::conservative)
       .def_readonly("friction", &signals::FittedShift::friction)
       .def_readonly("unexplained", &signals::FittedShift::unexplained)
-      .def_readonly("leading", &signals::FittedShift::leading,
+      .def_readonly(
+          "leading", &signals::FittedShift::leading,
 
-                    "The first column's coefficient without a shift; None where one was searched.");
+          "Coefficient of the first column without a shift; None if a shift was searched for.");
   m.def(
       "fit_shift",
       [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
@@ -134,7 +136,7 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(),
       py::arg("conservative"), py::arg("held"), py::arg("reach"), py::arg("robust"),
-      py::arg("least"), "The shift that a balance asks for, or None.");
+      py::arg("least"), "Return the time shift that a balance requires, or None.");
   m.def(
       "leading_coefficient",
       [](const Windows& windows, const std::vector<Array>& signals, const Matrix& columns,
@@ -145,7 +147,8 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("windows"), py::arg("signals"), py::arg("columns"), py::kw_only(), py::arg("held"),
 
-      "Of the first column, in least squares of the signals, not shifted, on the columns.");
+      "Return the first column's coefficient in least squares of the unshifted signals on the "
+      "columns.");
   m.def(
       "even_grid",
       [](const Array& time) {
@@ -153,7 +156,9 @@ void bind_shifts(py::module_& m) {
         auto found = signals::even_grid(signal_of(time));
         return std::make_pair(std::move(found.time), found.apart);
       },
-      py::arg("time"), "Even times from the first to the last, and how far off the times are [s].");
+      py::arg("time"),
+      "Return even times from the first to the last sample, and their distance from the real times "
+      "[s].");
   m.def(
       "half_length",
       [](const Array& values, double period, bool position) {
@@ -161,7 +166,7 @@ void bind_shifts(py::module_& m) {
         return signals::half_length(signal_of(values), period, position);
       },
       py::arg("signal"), py::arg("period"), py::kw_only(), py::arg("position"),
-      "Half the length of a window that averages the acceleration's noise.");
+      "Return half the length of a window that averages out the acceleration's noise.");
   m.def(
       "window_integrals",
       [](const Array& values, const Array& weights, const Indices& windows, bool rise) {
@@ -178,22 +183,25 @@ void bind_shifts(py::module_& m) {
       },
       py::arg("values"), py::arg("weights"), py::arg("windows"), py::kw_only(),
       py::arg("rise") = false,
-      "Integrals over windows, one row a window, or how far the values rise there.");
+      "Return integrals over windows, one row per window, or the rise of the values in each "
+      "window.");
   m.def(
       "circle",
       [](const Array& angle) {
         auto found = signals::circle_of(signal_of(angle));
         return std::make_pair(std::move(found.cosine), std::move(found.sine));
       },
-      py::arg("angle"), "Cosine and sine.");
+      py::arg("angle"), "Return cosine and sine.");
   m.def(
       "roughness", [](const Array& values) { return signals::roughness(signal_of(values)); },
-      py::arg("signal"), "Standard deviation of a signal's third differences.");
-  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise", "Noise of a reading in the torque.")
+      py::arg("signal"), "Return the standard deviation of a signal's third differences.");
+  py::class_<signals::RepeatedNoise>(m, "RepeatedNoise",
+                                     "Noise of a reading that the torque repeats.")
       .def_readonly("earlier", &signals::RepeatedNoise::earlier,
-                    "By how many samples the torque has it earlier.")
-      .def_readonly("error", &signals::RepeatedNoise::error, "Standard error, in samples.")
-      .def_readonly("share", &signals::RepeatedNoise::share, "Correlation of both noises.");
+                    "Number of samples by which the torque has the noise earlier.")
+      .def_readonly("error", &signals::RepeatedNoise::error,
+                    "Standard error of `earlier` in samples.")
+      .def_readonly("share", &signals::RepeatedNoise::share, "Correlation of the two noises.");
   m.def(
       "repeated_noise",
       [](const std::vector<std::pair<Array, Array>>& pairs) {
@@ -208,8 +216,8 @@ void bind_shifts(py::module_& m) {
         return signals::repeated_noise(both);
       },
       py::arg("pairs"),
-      "The noise of readings that the torque repeats, of pairs of both; None where it "
-      "does not.");
+      "Return the noise of the readings that the torques repeat, from pairs of both. None where "
+      "there is no such noise.");
 }
 
 }  // namespace jointid::bind

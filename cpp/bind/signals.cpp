@@ -24,15 +24,17 @@ PositionNoise noise_of(const Array& time, const Array& position,
 void bind_signals(py::module_& m) {
   py::class_<PositionNoise>(m, "PositionNoise", "Noise of a position signal.")
       .def_readonly("quantum", &PositionNoise::quantum,
-                    "The encoder's step [rad or m]; 0: positions lie on no grid.")
+                    "Resolution of the encoder [rad or m]; 0: positions lie on no grid.")
       .def_readonly("sigma", &PositionNoise::sigma,
-                    "Standard deviation at a sample, apart from that of the stamps [rad or m].")
+                    "Standard deviation of a sample, without errors of the time stamps [rad or m].")
       .def_readonly("timing", &PositionNoise::timing, "Scatter of the time stamps [s].");
   py::class_<LocalVelocity>(m, "LocalVelocity", "Velocity derived from position.")
       .def_readonly("velocity", &LocalVelocity::velocity)
-      .def_readonly("noise", &LocalVelocity::noise, "Its standard deviation at each sample.")
-      .def_readonly("refined", &LocalVelocity::refined,
-                    "False: the noise is harmless, every velocity is the difference.");
+      .def_readonly("noise", &LocalVelocity::noise,
+                    "Standard deviation of the velocity at each sample.")
+      .def_readonly(
+          "refined", &LocalVelocity::refined,
+          "False if the noise is harmless; then every velocity is the difference quotient.");
   m.def(
       "position_noise",
       [](const Array& time, const Array& position, const std::vector<std::int64_t>& gap_after,
@@ -48,7 +50,8 @@ void bind_signals(py::module_& m) {
         });
       },
       py::arg("time"), py::arg("position"), py::arg("gap_after"), py::arg("period"),
-      "Noise of a position: the encoder's step, white noise, errors of the stamps.");
+      "Return the noise of a position: the encoder's resolution, white noise, errors of the time "
+      "stamps.");
   m.def(
       "timing_errors",
       [](const Array& time, const Array& position, double period) {
@@ -58,7 +61,7 @@ void bind_signals(py::module_& m) {
         return std::make_pair(errors.as_stamped, errors.as_uniform);
       },
       py::arg("time"), py::arg("position"), py::arg("period"),
-      "Scatter of the samples' times about the stamps and about an even grid [s].");
+      "Return the scatter of the sampling times about the time stamps and about an even grid [s].");
   m.def(
       "local_velocity",
       [](const Array& time, const Array& position, const Array& difference,
@@ -73,8 +76,8 @@ void bind_signals(py::module_& m) {
       py::arg("time"), py::arg("position"), py::arg("difference"), py::arg("gap_after"),
       py::arg("noise"), py::arg("threads") = 0,
 
-      "Velocity by local cubics whose length follows the noise; the differences where they are "
-      "fine.");
+      "Return the velocity by local cubics with a length that follows the noise, or by differences "
+      "where they are accurate.");
 }
 
 }  // namespace jointid::bind

@@ -8,7 +8,7 @@ using namespace simulate;
 
 namespace {
 
-/// Closed to writing, so that a recording may take it as it is.
+/// Read-only, so that a recording can take the array without a copy.
 py::array_t<double> array_of(const std::vector<double>& values) {
   py::array_t<double> array(static_cast<py::ssize_t>(values.size()), values.data());
   array.attr("flags").attr("writeable") = false;
@@ -50,7 +50,7 @@ void bind_trajectory(py::module_& m) {
             const Reference wanted = trajectory.at(time);
             return py::make_tuple(wanted.position, wanted.velocity, wanted.acceleration);
           },
-          py::arg("time"), "Position, velocity and acceleration at a time.")
+          py::arg("time"), "Return position, velocity and acceleration at a time.")
       .def(
           "sample",
           [](const Trajectory& trajectory, const Eigen::VectorXd& time) {
@@ -61,18 +61,18 @@ void bind_trajectory(py::module_& m) {
             }
             return wanted;
           },
-          py::arg("time"), "Position, velocity and acceleration, shape (times, 3).")
+          py::arg("time"), "Return position, velocity and acceleration, shape (times, 3).")
       .def_property_readonly("duration", &Trajectory::duration);
 }
 
 void bind_joint(py::module_& m) {
   using model::Joint;
-  value(m, "SimulatedJoint", "A joint as the core simulates it: output side, SI.",
-        Field{"inertia", &Joint::inertia, "Of the drive [kg·m²]."},
-        Field{"link_inertia", &Joint::link_inertia, "Behind the torque sensor [kg·m²]."},
+  value(m, "SimulatedJoint", "A joint as the core simulates it: output side, SI units.",
+        Field{"inertia", &Joint::inertia, "Inertia of the drive [kg·m²]."},
+        Field{"link_inertia", &Joint::link_inertia, "Inertia behind the torque sensor [kg·m²]."},
         Field{"load", &Joint::load, "Constant torque behind the sensor [N·m]."},
         Field{"torque_offset", &Joint::torque_offset, "Constant torque in the drive [N·m]."},
-        Field{"torque_limit", &Joint::torque_limit, "Of the drive [N·m]."},
+        Field{"torque_limit", &Joint::torque_limit, "Torque limit of the drive [N·m]."},
         Field{"friction", &Joint::friction,
               "Basis, coefficients of positive and negative velocity, and shapes of each term."},
         Field{"load_friction", &Joint::load_friction, "Dry friction per torque of the drive [1]."},
@@ -80,40 +80,41 @@ void bind_joint(py::module_& m) {
         Field{"bristle_stiffness", &Joint::bristle_stiffness, "[N·m/rad]"},
         Field{"bristle_damping", &Joint::bristle_damping, "[N·m·s/rad]"},
         Field{"weights", &Joint::weights, "Torque [N·m] and angle [rad] of each weight."},
-        Field{"harmonics", &Joint::harmonics, "Order [1], cos and sin part [N·m]."});
+        Field{"harmonics", &Joint::harmonics, "Order [1], cosine and sine part [N·m]."});
 }
 
 void bind_scenario(py::module_& m) {
-  value(m, "Scenario", "What all simulations of a batch share.",
+  value(m, "Scenario", "Settings that all simulations of a batch share.",
         Field{"duration", &Scenario::duration, "[s]"},
         Field{"control_period", &Scenario::control_period, "Time for which a command is held [s]."},
         Field{"integration_step", &Scenario::integration_step,
-              "[s]; a whole number of them is a control period."},
-        Field{"sample_every", &Scenario::sample_every, "Control periods a recorded sample."},
-        Field{"settling", &Scenario::settling, "Left out of the tracking error [s]."},
+              "Step of the integration [s]; the control period is a multiple of it."},
+        Field{"sample_every", &Scenario::sample_every, "Control periods per recorded sample."},
+        Field{"settling", &Scenario::settling,
+              "Time at the start that the tracking error leaves out [s]."},
         Field{"sensors", &Scenario::sensors, "The sensors."});
   value(m, "Setup", "One simulation of a batch.",
-        Field{"joint", &Setup::joint, "What is simulated."},
-        Field{"controller", &Setup::controller, "Any controller."},
-        Field{"gear_ratio", &Setup::gear_ratio, "Motor's angle per output angle."},
+        Field{"joint", &Setup::joint, "The simulated joint."},
+        Field{"controller", &Setup::controller, "The controller, of any kind."},
+        Field{"gear_ratio", &Setup::gear_ratio, "Motor angle per output angle."},
         Field{"sensor_gain", &Setup::sensor_gain, "Torque per unit of the reading."},
         Field{"sensor_offset", &Setup::sensor_offset, "[N·m]"},
-        Field{"position", &Setup::position, "At the start [rad]."},
-        Field{"velocity", &Setup::velocity, "At the start [rad/s]."},
-        Field{"seed", &Setup::seed, "Of the noise."});
+        Field{"position", &Setup::position, "Position at the start [rad]."},
+        Field{"velocity", &Setup::velocity, "Velocity at the start [rad/s]."},
+        Field{"seed", &Setup::seed, "Seed of the noise."});
   py::class_<Outcome>(m, "Outcome", "The result of one simulation.")
       .def_property_readonly("signals", &signals_of, "Recorded and true signals by name.")
-      .def_readonly("rms_error", &Outcome::rms_error, "Of tracking, after settling [rad].")
-      .def_readonly("peak_error", &Outcome::peak_error, "Of tracking, after settling [rad].")
+      .def_readonly("rms_error", &Outcome::rms_error, "RMS tracking error after settling [rad].")
+      .def_readonly("peak_error", &Outcome::peak_error, "Peak tracking error after settling [rad].")
       .def_readonly("saturations", &Outcome::saturations,
-                    "Control periods in which the torque limit cut the command.");
+                    "Number of control periods in which the torque limit cut the command.");
 }
 
 void bind_stepped(py::module_& m) {
-  py::class_<Observation>(m, "Observation", "What sensors show at one instant.")
+  py::class_<Observation>(m, "Observation", "Values of the sensors at one instant.")
       .def_readonly("position", &Observation::position, "[rad]")
       .def_readonly("velocity", &Observation::velocity, "[rad/s]")
-      .def_readonly("reading", &Observation::reading, "Of the torque sensor.");
+      .def_readonly("reading", &Observation::reading, "Reading of the torque sensor.");
   py::class_<SteppedJoint>(m, "SteppedJoint", "A simulated joint that is moved step by step.")
       .def(py::init([](const model::Joint& joint, const Sensors& sensors, double gear_ratio,
                        double sensor_gain, double sensor_offset, double period, double step,
@@ -126,7 +127,8 @@ void bind_stepped(py::module_& m) {
            py::arg("position"), py::arg("velocity"), py::arg("seed"))
       .def("advance", &SteppedJoint::advance, py::arg("torque"), py::arg("duration"),
            "Hold a torque [N·m] for a time [s].")
-      .def("observe", &SteppedJoint::observe, "What the sensors show; advances their noise.")
+      .def("observe", &SteppedJoint::observe,
+           "Return the values of the sensors, and advance their noise.")
       .def_property_readonly("time", &SteppedJoint::time, "[s]")
       .def_property_readonly("position", &SteppedJoint::position, "[rad]")
       .def_property_readonly("velocity", &SteppedJoint::velocity, "[rad/s]")
@@ -153,7 +155,7 @@ void bind_simulate(py::module_& m) {
       },
       py::arg("scenario"), py::arg("trajectory"), py::arg("setups"), py::kw_only(),
       py::arg("signals"), py::arg("threads") = 0,
-      "One Outcome a setup; InputError when a loop is not stable.");
+      "Return one Outcome per setup. Raise InputError when a loop is not stable.");
 }
 
 }  // namespace jointid::bind

@@ -1,5 +1,5 @@
 #pragma once
-// What the bindings of the simulator share: casters of choices and small tuples.
+// Shared by the bindings of the simulator: casters of choices and small tuples.
 
 #include <pybind11/numpy.h>
 
@@ -9,7 +9,7 @@
 
 namespace jointid::bind {
 
-/// A field that a struct has from its base.
+/// A field that a struct inherits from its base.
 template <class T, class M, class Base>
 Field<T, M> inherited(const char* name, M Base::* member, const char* text) {
   return {name, static_cast<M T::*>(member), text};
@@ -45,7 +45,7 @@ struct type_caster<jointid::model::Friction> {
              four[2].cast<double>()};
     const auto shapes = four[3].cast<std::vector<double>>();
     if (shapes.size() > value.shapes.size()) return false;
-    value.shapes.fill(1.0);  // what a basis does not have is valid
+    value.shapes.fill(1.0);  // valid values for shapes that the basis does not have
     std::copy(shapes.begin(), shapes.end(), value.shapes.begin());
     return true;
   }

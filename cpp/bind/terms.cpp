@@ -12,36 +12,38 @@ using identify::Term;
 
 void bind_terms(py::module_& m) {
   py::native_enum<identify::Control>(m, "Control", "enum.Enum",
-                                     "What a model-based controller does about a term.")
+                                     "How a model-based controller treats a term.")
       .value("refused", identify::Control::refused)
       .value("feedback", identify::Control::feedback)
       .value("compensated", identify::Control::compensated)
       .finalize();
   py::class_<Term>(m, "Term", "One term of the torque balance: a coefficient times a basis.")
-      .def_readonly("key", &Term::key, "What a model lists; unique.")
+      .def_readonly("key", &Term::key, "Unique key by which a model lists the term.")
       .def_readonly("name", &Term::name, "The parameter's name.")
       .def_readonly("shapes", &Term::shapes, "Names of the basis's shape parameters.")
       .def_readonly("non_negative", &Term::non_negative)
       .def_property_readonly("friction", &identify::is_friction,
-                             "Whether it opposes motion, and so belongs to the friction map.")
-      .def_property_readonly("needs_load", &identify::needs_load,
-                             "Whether it is friction that depends on the drive's torque, too.")
+                             "Whether the term opposes motion, and so belongs to the friction map.")
+      .def_property_readonly(
+          "needs_load", &identify::needs_load,
+          "Whether the term is friction that also depends on the drive's torque.")
       .def_property_readonly(
           "basis",
           [](const Term& t) {
             if (!identify::is_friction(t)) return std::string();
             return std::string(identify::needs_load(t) ? "load" : base::word(t.basis));
           },
-          "What friction multiplies: \"constant\", \"linear\", \"load\" or a basis of the core's.")
+          "Factor of the friction coefficient: \"constant\", \"linear\", \"load\" or a basis of "
+          "the core.")
       .def_property_readonly(
           "expression", &identify::expression_of,
-          "The friction's basis as a product: `speed`, `load_size`, shapes by name; empty: 1.")
+          "The friction basis as a product with `speed`, `load_size` and shapes by name; empty: 1.")
       .def_property_readonly(
           "at_rest",
           [](const Term& t) {
             return identify::needs_load(t) ? 1.0 : model::facts_of(t.basis).at_rest;
           },
-          "The friction's basis at a vanishing speed.")
+          "The friction basis at a vanishing speed.")
       .def_property_readonly(
           "settles",
           [](const Term& t) {
@@ -49,63 +51,64 @@ void bind_terms(py::module_& m) {
                    t.integral != identify::Integral::displacement &&
                    model::facts_of(t.basis).settles;
           },
-          "Whether the friction's basis is 1 in fast motion, as of Coulomb friction.")
+          "Whether the friction basis is 1 in fast motion, as for Coulomb friction.")
       .def_property_readonly(
           "side", [](const Term& t) { return identify::side_of(t); },
-          "1 or -1: friction of this direction of motion alone; 0: of both.")
+          "1 or -1: friction of this direction of motion only; 0: of both directions.")
       .def_property_readonly(
           "above_zero", [](const Term& t) { return model::facts_of(t.basis).shape_above; },
           "Whether its shape parameters must be above 0.")
       .def_property_readonly(
           "behind_gear",
           [](const Term& t) { return t.integral == identify::Integral::link_friction; },
-          "Whether it is friction that grows with the torque behind the gear.")
+          "Whether the term is friction that grows with the torque behind the gear.")
       .def_property_readonly(
           "family",
           [](const Term& t) {
             return t.harmonic != identify::Harmonic::none || identify::is_own(t);
           },
 
-          "True if the row stands for a term an order, as in ripple_sin_2, or a signal.")
+          "True if the row represents one term per order, as in ripple_sin_2, or per signal.")
       .def_property_readonly("own", &identify::is_own,
-                             "True for a term of a named signal, as viscous_of_q6.")
+                             "True for a term of a named signal, such as viscous_of_q6.")
       .def_readonly("unit", &Term::unit)
       .def_readonly("unit_prismatic", &Term::unit_prismatic)
       .def_readonly("meaning", &Term::meaning)
-      .def_readonly("advice", &Term::advice, "Which motion determines it.")
+      .def_readonly("advice", &Term::advice, "Motion that determines the coefficient.")
       .def_readonly("option", &Term::option,
-                    "What adds it: \"name\" is a friction model, else an option of the model; "
-                    "empty: always there.")
-      .def_readonly("simulated", &Term::simulated, "Whether the simulated joint has it.")
+                    "Option that adds the term: \"name\" is a friction model, any other word an "
+                    "option of the model; empty: always present.")
+      .def_readonly("simulated", &Term::simulated, "Whether the simulated joint has the term.")
       .def_readonly("control", &Term::control);
-  py::class_<Shape>(m, "Shape", "A shape parameter: the basis of a term is not linear in it.")
+  py::class_<Shape>(m, "Shape", "A shape parameter. The basis of a term is not linear in it.")
       .def_readonly("name", &Shape::name)
       .def_readonly("unit", &Shape::unit)
       .def_readonly("unit_prismatic", &Shape::unit_prismatic)
       .def_readonly("meaning", &Shape::meaning)
-      .def_readonly("advice", &Shape::advice, "Which motion determines it.")
+      .def_readonly("advice", &Shape::advice, "Motion that determines the parameter.")
       .def_readonly("speed_power", &Shape::speed_power,
 
-                    "Default bounds are shares of the peak speed to this power; 0: lower, upper.")
+                    "Default bounds are shares of the peak speed to this power; with 0, `lower` "
+                    "and `upper` hold.")
       .def_readonly("lower", &Shape::lower, "Default bound where speed_power is 0.")
       .def_readonly("upper", &Shape::upper, "Default bound where speed_power is 0.")
       .def_readonly("typical", &Shape::typical, "A usual value where speed_power is 0.");
-  py::class_<Model>(m, "Model", "A friction model by name, as the keys of its terms.")
+  py::class_<Model>(m, "Model", "A friction model: its name and the keys of its terms.")
       .def_readonly("name", &Model::name)
       .def_readonly("equation", &Model::equation)
       .def_readonly("terms", &Model::terms);
-  m.def("terms", &identify::term_table, "All terms, in canonical order.");
-  m.def("shapes", &identify::shape_table, "All shape parameters.");
-  m.def("models", &identify::model_table, "All friction models.");
+  m.def("terms", &identify::term_table, "Return all terms, in canonical order.");
+  m.def("shapes", &identify::shape_table, "Return all shape parameters.");
+  m.def("models", &identify::model_table, "Return all friction models.");
   m.def("term", &identify::find_term, py::arg("key"),
-        "The term of that key; \"ripple_sin_2\" is order 2 of its family, "
-        "viscous_of_q6 the signal "
-        "q6's.");
-  m.def("shape", &identify::find_shape, py::arg("name"), "The shape parameter of that name.");
+        "Return the term with this key. \"ripple_sin_2\" is order 2 of its family; viscous_of_q6 "
+        "is the term of signal q6.");
+  m.def("shape", &identify::find_shape, py::arg("name"),
+        "Return the shape parameter with this name.");
   m.def("model_terms", &identify::model_terms, py::arg("name"), py::kw_only(),
         py::arg("asymmetric") = false,
-        "Keys of a friction model's terms; asymmetric: two for each, one a direction "
-        "of motion.");
+        "Return the keys of a friction model's terms. `asymmetric` gives two per term, one for "
+        "each direction of motion.");
   m.def("is_parameter", &identify::is_parameter, py::arg("name"),
         "Whether a parameter can have this name.");
   m.def(
@@ -115,9 +118,8 @@ void bind_terms(py::module_& m) {
         return identify::friction_basis(identify::find_term(key), velocity, shapes, load);
       },
       py::arg("key"), py::arg("velocity"), py::arg("shapes"), py::arg("load") = 0.0,
-      "The friction term's basis at each velocity [rad/s or m/s] while the drive "
-      "transmits a load "
-      "[N·m or N]: what its coefficient multiplies.");
+      "Return the friction term's basis, the factor of its coefficient, at each velocity [rad/s or "
+      "m/s] while the drive transmits a load [N·m or N].");
   m.def("model_names", [] {
     std::vector<std::string> names;
     for (const auto& model : identify::model_table()) names.emplace_back(model.name);
@@ -137,7 +139,7 @@ void bind_terms(py::module_& m) {
         }
         return py::tuple(py::cast(names));
       },
-      "All parameters but the harmonics, a shape parameter after its first term.");
+      "Return all parameters except the harmonics, each shape parameter after its first term.");
 }
 
 }  // namespace jointid::bind

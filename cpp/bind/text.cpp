@@ -15,7 +15,7 @@ void bind_text(py::module_& m) {
         return text::number_table(text, below, separator, columns);
       },
       py::arg("text"), py::arg("below"), py::arg("separator"), py::arg("columns"),
-      "The numbers of all rows below the first lines; None where a cell is not a "
+      "Return the numbers of all rows after the first `below` lines. None where a cell is not a "
       "plain number.");
   m.def(
       "number_list",
@@ -23,7 +23,8 @@ void bind_text(py::module_& m) {
         const py::gil_scoped_release nogil;
         return text::number_list({values.data(), static_cast<std::size_t>(values.size())});
       },
-      py::arg("values"), "A list of finite numbers as JSON; None where Python has to write it.");
+      py::arg("values"),
+      "Return a list of finite numbers as JSON. None where Python has to write it.");
   m.def(
       "find_control_character",
       [](const py::bytes& content) -> py::ssize_t {
@@ -32,7 +33,8 @@ void bind_text(py::module_& m) {
       },
       py::arg("content"),
 
-      "The place of the first byte that no text contains in any encoding; -1 without one.");
+      "Return the index of the first byte that no text contains in any encoding; -1 if there is "
+      "none.");
 }
 
 }  // namespace jointid::bind

@@ -14,8 +14,8 @@ py::object read(const FieldAccess& field, const void* value) {
   return field.get(static_cast<const std::byte*>(value) + field.offset);
 }
 
-/// Refuses a Python integer that a field cannot hold, with the range that the struct's own check
-/// names; with the range of the field's type where the check names none.
+/// Refuses a Python integer that a field cannot hold. Names the range of the struct's own check, or
+/// the range of the field's type if that check names none.
 [[noreturn]] void refuse_beyond(const ValueShape& shape, const FieldAccess& field, void* value,
                                 const std::string& argument, const py::handle& given) {
   const bool low = py::reinterpret_borrow<py::object>(given) < py::int_(0);

@@ -1,7 +1,7 @@
 #pragma once
-// Plain structs as frozen Python values. What is done to all fields is written once, behind
-// functions that know a field's type and nothing of its struct: made anew for each struct and
-// field, it was an eighth of the compiled part.
+// Plain structs as frozen Python values. Operations on all fields are written once, behind
+// functions that know a field's type but not its struct. Templates for each struct and field made
+// an eighth of the compiled extension.
 
 #include <pybind11/eigen.h>
 #include <pybind11/functional.h>
@@ -27,15 +27,16 @@ struct Field {
 template <class T, class M>
 Field(const char*, M T::*, const char*) -> Field<T, M>;
 
-/// A field behind functions of its type.
+/// A field, accessed through functions of its type.
 struct FieldAccess {
   const char* name;
   const char* text;
-  const char* kind;       ///< what it takes, for a message
-  std::ptrdiff_t offset;  ///< [bytes] from the begin of the struct
+  const char* kind;       ///< accepted kind of value, for a message
+  std::ptrdiff_t offset;  ///< [bytes] from the start of the struct
   py::object (*get)(const void* field);
   void (*set)(void* field, const py::handle& given);  ///< throws py::cast_error
-  /// Puts the end of the type's range and returns it; null for what is no whole number.
+  /// Stores the end of the type's range and returns it as text; null for a type without whole
+  /// numbers.
   std::string (*extreme)(void* field, bool low);
 };
 
@@ -45,7 +46,7 @@ struct ValueShape {
   void (*validate)(const void* value);
 };
 
-/// Sets the given fields and validates; the value is of no use after an exception.
+/// Sets these fields and validates. Do not use the value after an exception.
 void change(const ValueShape& shape, void* value, const py::dict& changes);
 
 py::dict fields_of(const ValueShape& shape, const void* value);
@@ -53,10 +54,10 @@ py::dict fields_of(const ValueShape& shape, const void* value);
 /// Name(field=value, ...)
 std::string text_of(const ValueShape& shape, const void* value);
 
-/// The docstring: the text, and each field with its default.
+/// Returns the docstring: the text, then each field with its default.
 std::string described(const ValueShape& shape, const void* defaults, std::string text);
 
-/// What a field of this type takes, for a message.
+/// The kind of value that a field of this type accepts, for a message.
 template <class V>
 constexpr const char* kind_of() {
   if constexpr (std::is_same_v<V, bool>) return "True or False is expected";
@@ -96,7 +97,7 @@ ValueShape shape_of(const char* name, const Field<T, M>&... fields) {
           [](const void* value) { static_cast<const T*>(value)->validate(); }};
 }
 
-/// A plain struct as a frozen Python value: keyword-only constructor that validates, replace,
+/// Binds a plain struct as a frozen Python value: keyword-only constructor that validates, replace,
 /// asdict, repr, ==, hash, pickle.
 template <class T, class... M>
 py::class_<T> value(py::module_& m, const char* name, std::string text, Field<T, M>... fields) {
@@ -116,9 +117,9 @@ py::class_<T> value(py::module_& m, const char* name, std::string text, Field<T,
         change(shape, &changed, given);
         return changed;
       },
-      "A copy with the given fields changed.");
+      "Return a copy with these fields changed.");
   const auto asdict = [](const T& self) { return fields_of(shape, &self); };
-  bound.def("asdict", asdict, "The fields as a dictionary.");
+  bound.def("asdict", asdict, "Return the fields as a dictionary.");
   bound.def("__repr__", [](const T& self) { return text_of(shape, &self); });
   bound.def("__eq__", [](const T& self, const py::object& other) {
     return py::isinstance<T>(other) &&

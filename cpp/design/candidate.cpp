@@ -12,11 +12,12 @@ namespace jointid::design {
 namespace {
 
 constexpr double kTwoPi = 0x1.921fb54442d18p+2;
-constexpr double kLeast = 0.25;    // of the limits that a motion uses
-constexpr double kPerPeriod = 32;  // samples of the fastest sine: peaks are missed by 0.5 %
+constexpr double kLeast = 0.25;  // share of the limits that a motion uses
+constexpr double kPerPeriod =
+    32;  // samples per period of the fastest sine: peaks are missed by 0.5 %
 constexpr double kMissed = 0.995;
 
-/// The largest share of the sines that keeps all bounds.
+/// The largest factor on the sines that keeps all bounds.
 double largest(const Family& family, const Sines& sines) {
   const Bounds& bounds = family.bounds;
   Sines moved = sines;
@@ -94,7 +95,8 @@ Sines motion_of(const Family& family, const Eigen::VectorXd& genes) {
     const double frequency = family.slowest * base::exp(span * genes[i]);
     const double size = genes[count + i];
     sines.frequency[i] = frequency;
-    // Between equal angles and equal speeds; 0 is as likely as it must be for fewer sines.
+    // Interpolates between equal angles and equal speeds. A size of 0 is likely enough that some
+    // motions have fewer sines.
     sines.amplitude[i] = size * size / std::sqrt(frequency / family.slowest);
     sines.phase[i] = kTwoPi * genes[2 * count + i];
   }

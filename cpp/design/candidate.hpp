@@ -1,6 +1,6 @@
 #pragma once
-// Motions to choose among: sums of sines of free size, frequency and phase that start and end at
-// rest, made as large as the limits allow.
+// Candidate motions: sums of sines of free size, frequency and phase that start and end at rest.
+// They are as large as the limits allow.
 
 #include <Eigen/Core>
 
@@ -15,7 +15,8 @@ struct Bounds {
   double highest = 1.0;
   double velocity = 1.0;      ///< [rad/s]
   double acceleration = 1.0;  ///< [rad/s^2]
-  /// The drive's torque for the joint that needs most: inertia · |a| + viscous · |v| + dry.
+  /// Bound on the drive's torque for the joint that needs most: inertia · |a| + viscous · |v| +
+  /// dry.
   double torque = 1e300;
   double inertia = 0.0;
   double viscous = 0.0;
@@ -33,8 +34,8 @@ struct Family {
   Bounds bounds{};
 
   void validate() const;
-  /// Genes of a motion: for each sine frequency, size, phase; the position at rest; how much of the
-  /// limits it uses. All between 0 and 1.
+  /// Number of genes of a motion: frequency, size and phase of each sine, the position at rest, and
+  /// the used share of the limits. All genes are between 0 and 1.
   [[nodiscard]] Eigen::Index genes() const { return 3 * sines + 2; }
   [[nodiscard]] search::Domain domain() const;
 };
@@ -51,7 +52,7 @@ struct Sines {
   [[nodiscard]] simulate::Trajectory trajectory() const;
 };
 
-/// The motion of some genes, within the family's bounds between samples too.
+/// The motion of these genes. It keeps the family's bounds, also between samples.
 Sines motion_of(const Family& family, const Eigen::VectorXd& genes);
 
 }  // namespace jointid::design

@@ -12,9 +12,9 @@ namespace jointid::design {
 
 namespace {
 
-constexpr double kExcess = 20.0;    // of the logarithm, for each unit of a limit
+constexpr double kExcess = 20.0;    // added to the logarithm per unit of a limit
 constexpr double kUnknown = 1e6;    // of an error: the parameter is not determined
-constexpr double kWeakest = 1e-13;  // eigenvalue of a correlation matrix
+constexpr double kWeakest = 1e-13;  // least eigenvalue of a correlation matrix
 constexpr double kUnstable = 1e3;   // a loop that diverges: worse than any other
 
 double beyond(double reached, double allowed) {
@@ -28,8 +28,8 @@ void hold(Judgement& j, const Held& held) {
                        beyond(j.torque, held.torque), beyond(j.link_torque, held.link_torque)});
 }
 
-/// Root-mean-square errors by an information matrix and what misleads it, and the bias in them;
-/// kUnknown for a parameter without information.
+/// Root-mean-square errors from an information matrix and the systematic error, and the bias in
+/// them. kUnknown for a parameter without information.
 std::pair<Eigen::VectorXd, Eigen::VectorXd> errors_of(const Eigen::MatrixXd& information,
                                                       const Eigen::VectorXd& misled) {
   const Eigen::VectorXd told = information.diagonal().cwiseMax(0.0).cwiseSqrt();
@@ -79,14 +79,15 @@ Excitation::Excitation(Family family, simulate::Scenario scenario, std::vector<D
 
 std::vector<Judgement> Excitation::judge(const simulate::Trajectory& trajectory,
                                          const base::Cancel& cancel) const {
-  // Kept from one motion to the next: fresh memory would cost as much as the simulation.
+  // Kept between motions, because allocating memory would cost as much as the simulation.
   thread_local std::vector<simulate::Reference> wanted;
   thread_local std::vector<simulate::Outcome> outcomes;
   wanted.resize(scenario_.instants());
   trajectory.sample(scenario_.control_period, wanted);
   std::vector<Judgement> result;
   result.reserve(joints_.size());
-  // No more at a time than run side by side: the signals of many joints would fill the memory.
+  // No more at a time than can run in parallel, because the signals of many joints would fill the
+  // memory.
   for (std::size_t first = 0; first < joints_.size(); first += simulate::kSideBySide) {
     const std::size_t last = std::min(joints_.size(), first + simulate::kSideBySide);
     std::vector<simulate::Setup> setups;

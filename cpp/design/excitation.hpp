@@ -1,6 +1,6 @@
 #pragma once
-// What a motion is worth: the errors that an identification from it would have, for several joints
-// that the prior allows, each moved by the controller that will drive it.
+// Value of a motion: the errors that an identification from it would have. It is computed for
+// several joints that the prior allows, each moved by the controller that will drive it.
 
 #include <Eigen/Core>
 #include <vector>
@@ -18,12 +18,12 @@ enum class Criterion { worst, determinant };
 /// One joint that the prior allows.
 struct Drawn {
   simulate::Setup setup{};
-  std::vector<Column> columns{};  ///< of the free parameters, the same for all joints
+  std::vector<Column> columns{};  ///< columns of the free parameters, the same for all joints
   Noise noise{};
-  Eigen::VectorXd scale;   ///< what an error counts in
+  Eigen::VectorXd scale;   ///< unit in which an error counts
   Eigen::VectorXd weight;  ///< 1: requested, 0: not
-  Eigen::MatrixXd known;   ///< information at hand: other recordings, the prior
-  double inertia = 0.0;    ///< that a window's change of velocity counts with
+  Eigen::MatrixXd known;   ///< existing information: other recordings and the prior
+  double inertia = 0.0;    ///< inertia that multiplies a window's change of velocity
   double viscous = 0.0;
 };
 
@@ -39,18 +39,18 @@ struct Held {
   void validate() const;
 };
 
-/// Of one motion and one joint.
+/// Judgement of one motion for one joint.
 struct Judgement {
   Eigen::VectorXd errors;  ///< expected root-mean-square errors over their scales
-  Eigen::VectorXd bias;    ///< the part of them that every recording of the motion shows
+  Eigen::VectorXd bias;    ///< the part of them that is the same in every recording of the motion
   Eigen::MatrixXd information;
-  double lowest = 0.0;  ///< what the joint reaches
+  double lowest = 0.0;  ///< lowest position that the joint reaches
   double highest = 0.0;
   double velocity = 0.0;
   double acceleration = 0.0;
   double torque = 0.0;
   double link_torque = 0.0;
-  double excess = 0.0;  ///< the largest share by which a limit is exceeded; 0: none
+  double excess = 0.0;  ///< the largest excess over a limit, as a share of it; 0: none
 };
 
 class Excitation {
@@ -59,14 +59,15 @@ class Excitation {
              Criterion criterion, int window);
 
   [[nodiscard]] const Family& family() const { return family_; }
-  /// One for each joint.
+  /// One judgement per joint.
   [[nodiscard]] std::vector<Judgement> judge(const simulate::Trajectory& trajectory,
                                              const base::Cancel& cancel) const;
-  /// The logarithm of what is minimised, and more where a limit is exceeded.
+  /// The logarithm of the criterion, increased where a limit is exceeded.
   [[nodiscard]] double cost(const std::vector<Judgement>& judgements) const;
-  /// Costs of candidates' genes, one a column, positive for the search.
+  /// Costs of candidates' genes, one candidate per column. Positive, as the search needs.
   void evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& costs, base::Pool& pool) const;
-  /// Leaves out, for each joint, what none of these motions determines to within `largest`.
+  /// Leaves out, for each joint, the parameters that none of these motions determines to within
+  /// `largest`.
   void leave_out(const Eigen::MatrixXd& candidates, double largest, base::Pool& pool);
   [[nodiscard]] const std::vector<Drawn>& joints() const { return joints_; }
 

@@ -10,13 +10,14 @@ namespace jointid::design {
 
 namespace {
 
-/// How fast friction changes that varies with the speed [N·m/s].
+/// Rate of change of the friction that varies with the speed [N·m/s].
 double varying_rate(const model::Joint& joint, double velocity, double acceleration) {
   const double speed = std::fabs(velocity);
   if (speed == 0.0) return 0.0;
   double sum = 0.0;
   for (const auto& term : joint.friction) {
-    if (term.basis == model::SpeedBasis::linear) continue;  // integrated without an error
+    if (term.basis == model::SpeedBasis::linear)
+      continue;  // columns that are integrated without an error
     const double coefficient = velocity > 0.0 ? term.positive : term.negative;
     sum += coefficient * model::basis_rate(term.basis, speed, term.shapes.data());
   }

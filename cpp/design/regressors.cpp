@@ -42,7 +42,7 @@ JOINTID_CLONES void gaussian(double shape, const double* velocity, std::size_t c
 
 void friction(const Column& column, const std::vector<double>& velocity, double* result) {
   if (column.shape < 0 && column.term.direction == model::Direction::both) {
-    switch (column.term.basis) {  // what every joint has, without a choice at each sample
+    switch (column.term.basis) {  // columns of every joint, without a choice at each sample
       case model::SpeedBasis::constant:
         std::transform(velocity.begin(), velocity.end(), result, sign_of);
         return;
@@ -68,7 +68,7 @@ void friction(const Column& column, const std::vector<double>& velocity, double*
   }
 }
 
-/// The slope by the shape of exp(-s v^2), from the column of its value: an exponential less.
+/// The slope by the shape of exp(-s v^2), from the column of its value, which saves an exponential.
 void gaussian_slope(double coefficient, const std::vector<double>& velocity, const double* value,
                     double* result) {
   for (std::size_t k = 0; k < velocity.size(); ++k) {
@@ -82,7 +82,7 @@ void by_load(const std::vector<double>& velocity, const std::vector<double>& loa
   }
 }
 
-/// Whether `value` is the coefficient's column of the term whose shape `slope` is.
+/// Whether `value` is the coefficient's column of the term with the shape `slope`.
 bool is_value_of(const Column& value, const Column& slope) {
   return value.shape < 0 && slope.shape == 0 && value.term.key == slope.term.key &&
          slope.term.basis == model::SpeedBasis::gaussian;

@@ -12,22 +12,22 @@ namespace jointid::diagnose {
 
 namespace {
 
-constexpr Eigen::Index kLength = 8;  // samples a block
+constexpr Eigen::Index kLength = 8;  // samples per block
 constexpr std::size_t kFewest = 20;  // blocks
-constexpr double kTrim = 9.0;        // medians of what is missed
+constexpr double kTrim = 9.0;        // medians of the residual
 constexpr std::size_t kLanes = 8;
 
-/// Blocks, a column a quantity.
+/// Blocks, one column per quantity.
 struct Blocks {
-  std::vector<double> path;    ///< by the velocity
-  std::vector<double> change;  ///< of the velocity
-  std::vector<double> moved;   ///< by the position
+  std::vector<double> path;    ///< travel by the velocity
+  std::vector<double> change;  ///< change of the velocity
+  std::vector<double> moved;   ///< travel by the position
   std::vector<double> kept;    ///< 1 or 0
-  Eigen::VectorXd missed;      ///< sizes
+  Eigen::VectorXd missed;      ///< sizes of the residuals
   [[nodiscard]] std::size_t count() const { return path.size(); }
 };
 
-/// Of a velocity over a block, by the trapezoid rule.
+/// Integral of a velocity over a block, by the trapezoidal rule.
 JOINTID_CLONES double path_of(const double* time, const double* velocity) {
   base::Four sum;
   base::fill(sum, 0.0);
@@ -46,13 +46,13 @@ JOINTID_CLONES double path_of(const double* time, const double* velocity) {
   return 0.5 * base::sum_of(sum);
 }
 
-/// Least squares of two columns by orthogonalising the second to the first.
+/// Least squares of two columns: the second is orthogonalised to the first.
 struct Fit {
   double scale = 0.0;
   double lag = 0.0;
   double path = 0.0;   ///< norm of the first column
-  double cross = 0.0;  ///< of the second along it
-  double own = 0.0;    ///< norm of what is left of the second
+  double cross = 0.0;  ///< part of the second column along the first
+  double own = 0.0;    ///< norm of the rest of the second column
 
   /// Smaller singular value over the larger one.
   [[nodiscard]] double condition() const {
@@ -76,7 +76,7 @@ JOINTID_CLONES double sum_of(const double* weight, const double* one, const doub
   return ((sum[0] + sum[1]) + (sum[2] + sum[3])) + ((sum[4] + sum[5]) + (sum[6] + sum[7]));
 }
 
-/// What is left of a series beside a multiple of another one.
+/// A series minus a multiple of another one.
 JOINTID_CLONES void subtract(const double* series, double factor, const double* other,
                              std::size_t count, double* left) {
   for (std::size_t i = 0; i < count; ++i) left[i] = series[i] - factor * other[i];
@@ -105,7 +105,7 @@ Fit fit(const Blocks& blocks) {
   return result;
 }
 
-/// What a fit leaves of each block's motion.
+/// Residual of a fit in each block.
 JOINTID_CLONES void take_misses(const double* path, const double* change, const double* moved,
                                 double scale, double lag, std::size_t count, double* missed) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -113,8 +113,8 @@ JOINTID_CLONES void take_misses(const double* path, const double* change, const 
   }
 }
 
-/// Keeps what misses by no more than the limit: how many these are, and how many others than
-/// before. Counted in doubles, which is exact.
+/// Keeps blocks with a residual within the limit. Returns their number, and the number of changes
+/// since the last call. Counted in doubles, which is exact.
 struct Trimmed {
   double kept;
   double changed;
@@ -187,11 +187,11 @@ std::optional<Agreement> velocity_agreement(const Signal& time, const Signal& po
         trim(blocks.missed.data(), limit, blocks.count(), blocks.kept.data());
     count = static_cast<std::size_t>(kept);
     left = sum_of(blocks.kept.data(), blocks.missed.data(), blocks.missed.data(), blocks.count());
-    if (changed == 0.0) break;  // what follows is the same again
+    if (changed == 0.0) break;  // further rounds would be the same
     found = fit(blocks);
   }
   const double precision = static_cast<double>(count) * std::numeric_limits<double>::epsilon();
-  // In a joint that mostly stands, the motion itself is what the fit leaves out.
+  // In a joint that is mostly at rest, the trimming removes the motion itself.
   if (moving(blocks) < kFewest || found.condition() <= precision) return std::nullopt;
   const double variance = left / static_cast<double>(count - 2);
   return Agreement{found.scale, found.lag, std::sqrt(variance) / found.own};

@@ -8,7 +8,7 @@
 namespace jointid::diagnose {
 
 /// position change = scale * integrated velocity + lag * velocity change, over blocks of eight
-/// samples, trimmed; none where there are too few blocks or the two are indistinguishable.
+/// samples, trimmed. None if there are too few blocks or the two effects are indistinguishable.
 struct Agreement {
   double scale;
   double lag;        ///< [s]

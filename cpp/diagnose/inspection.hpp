@@ -1,5 +1,5 @@
 #pragma once
-// All checks of a recording by itself, as tasks of one pool.
+// All checks of a recording that need no model, as tasks of one pool.
 
 #include <optional>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace jointid::diagnose {
 
-/// A signal to look at.
+/// A signal to examine.
 struct Channel {
   Signal values;
   SpikeRule rule;
@@ -30,10 +30,10 @@ struct Subject {
 struct Inspection {
   double peak_speed = 0.0;
   Extremes position;
-  std::vector<SignalFacts> facts;  ///< a channel
-  std::vector<Spike> spikes;       ///< a channel
+  std::vector<SignalFacts> facts;  ///< one per channel
+  std::vector<Spike> spikes;       ///< one per channel
   std::int64_t jump = -1;
-  std::optional<Agreement> agreement;  ///< none also for a derived velocity
+  std::optional<Agreement> agreement;  ///< none if the velocity is derived
   signals::TimingErrors timing;
 };
 

@@ -16,18 +16,18 @@ namespace {
 constexpr double kPi = 3.14159265358979323846;
 constexpr std::int64_t kSamples = 1 << 18;
 
-constexpr std::size_t kWindows = 2 * base::kFour;  // windows side by side
+constexpr std::size_t kWindows = 2 * base::kFour;  // windows in parallel
 
-/// Of the windows of one part that are looked at.
+/// Examined windows of one part.
 struct Looked {
   std::size_t windows = 0;
-  double sum = 0.0;        ///< of the means
-  Eigen::VectorXd mean;    ///< of the residual; the last lanes are filled up
-  Eigen::VectorXd cosine;  ///< of half the motor's angle, 0 in what fills the lanes
+  double sum = 0.0;        ///< of the mean residuals
+  Eigen::VectorXd mean;    ///< mean residuals; the last lanes are filled up
+  Eigen::VectorXd cosine;  ///< cosine and sine of half the motor's angle, 0 in the filled lanes
   Eigen::VectorXd sine;
 };
 
-/// A multiple, and the one before it.
+/// A multiple, and the multiple before it.
 struct Two {
   base::Four now;
   base::Four before;
@@ -40,9 +40,9 @@ struct Two {
   two.now = next;
 }
 
-/// Adds residual times cosine and sine of `halves` multiples of the windows' angles: two sums a
+/// Adds residual times cosine and sine of `halves` multiples of the windows' angles: two sums per
 /// multiple, each in four parts. Each multiple follows from the two before it,
-/// cos (h + 1) a = 2 cos a cos h a - cos (h - 1) a. In explicit vectors, since compilers leave
+/// cos (h + 1) a = 2 cos a cos h a - cos (h - 1) a. In explicit vectors, because compilers leave
 /// these lanes scalar.
 JOINTID_CLONES void turn(const double* residual, const double* cosine, const double* sine,
                          std::size_t halves, double* sums) {
@@ -107,7 +107,7 @@ Looked look_at(const identify::PenaltyParts& parts, std::size_t index, const Eig
   return looked;
 }
 
-/// Of what is left after the mean: a row a multiple, the sums with cosine and sine.
+/// Sums without the mean: one row per multiple, the sums with cosine and sine.
 struct Sums {
   double square = 0.0;
   Eigen::Matrix<double, Eigen::Dynamic, 2> circle;

@@ -12,20 +12,20 @@ namespace jointid::diagnose {
 
 namespace {
 
-constexpr double kFine = 30.0;    // a usual step in smallest steps
+constexpr double kFine = 30.0;    // usual step over the smallest step
 constexpr double kMoving = 0.1;   // of the peak speed
 constexpr double kStill = 0.005;  // of the peak speed
 constexpr double kNear = 0.01;    // of the range
 constexpr double kFrozen = 0.1;   // [s]
 constexpr std::size_t kBlock = 65536;
-constexpr std::size_t kFew = 32;  // samples looked at together
+constexpr std::size_t kFew = 32;  // samples per block
 
 void look(const base::Cancel* cancel) {
   if (cancel != nullptr) cancel->check();
 }
 
-/// Whether the median of the positive steps is at least `kFine` times the smallest: counting tells,
-/// unless the two middle ones lie on either side.
+/// Whether the median of the positive steps is at least `kFine` times the smallest. Counting
+/// decides, unless the two middle steps lie on either side.
 bool is_fine(const Signal& signal, double smallest, std::int64_t changes, std::int64_t large,
              const base::Cancel* cancel) {
   if (changes == 0) return false;
@@ -60,7 +60,7 @@ struct Seen {
   std::int64_t odd;     ///< samples near a limit, or equal to the next one
 };
 
-/// Counts over `count` samples, the one behind them included in the steps.
+/// Counts over `count` samples; the sample after them is part of the steps.
 JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
                             const Rules& rules) {
   Four fine;
@@ -76,7 +76,7 @@ JOINTID_CLONES Seen look_at(const double* x, const double* v, std::size_t count,
   base::fill(lowest, rules.lowest);
   base::fill(highest, rules.highest);
   base::fill(smallest, rules.smallest);
-  base::fill(nowhere, -1.0);  // where the next sample is the same
+  base::fill(nowhere, -1.0);  // 1 where the next sample is the same
   Four small{};
   Four slow{};
   Four strange{};
@@ -149,8 +149,8 @@ SignalFacts inspect_signal(const Signal& signal, const Signal& velocity, double 
     if (static_cast<double>(run) * period > kFrozen && run > 10) facts.frozen += run;
     run = 0;
   };
-  // Few samples are near a limit or repeat the one before: only blocks with such are looked at
-  // sample by sample.
+  // Few samples are near a limit or repeat the previous one. Only blocks with such samples are
+  // examined sample by sample.
   const auto limits = [&](Eigen::Index k) {
     const double value = x[k];
     if (value - lowest <= rules.close) {

@@ -18,12 +18,12 @@ constexpr double kPositionSpike = 8.0;  // usual changes
 constexpr double kOfRange = 0.1;        // of the range that holds 95 % of the samples
 constexpr double kOfCommand = 0.6;
 constexpr double kAtTurn = 1.2;     // of the range, where the joint reverses or sticks
-constexpr double kSlow = 0.05;      // of the peak speed: friction falls, and may let go at once
-constexpr Eigen::Index kReach = 6;  // samples: a derived velocity tells a reversal no better
+constexpr double kSlow = 0.05;      // of the peak speed: friction falls, and may drop abruptly
+constexpr Eigen::Index kReach = 6;  // samples: time resolution of a reversal in a derived velocity
 constexpr double kJump = 4.0;       // times the rate that 1 % of the intervals exceed
-constexpr double kClearly = 1e-12;  // rounding never decides
+constexpr double kClearly = 1e-12;  // margin, so that rounding never decides
 
-/// Changes over `width` samples that are not zero, and those of at least `enough`.
+/// Counts changes over `width` samples that are not zero, and changes of at least `enough`.
 JOINTID_CLONES void count_changes(const double* x, std::size_t width, std::size_t changes,
                                   double enough, std::int64_t* positive, std::int64_t* beyond) {
   using base::Four;
@@ -53,7 +53,7 @@ JOINTID_CLONES void count_changes(const double* x, std::size_t width, std::size_
   *beyond = many;
 }
 
-/// Intervals over which the rate is below `enough`.
+/// Number of intervals with a rate below `enough`.
 JOINTID_CLONES std::int64_t count_slower(const double* time, const double* x, std::size_t intervals,
                                          double enough) {
   std::int64_t below = 0;
@@ -81,8 +81,8 @@ double spread(const Signal& signal, const base::Cancel* cancel) {
          base::quantile(count, count, 0.025, value, cancel);
 }
 
-/// Whether the joint reverses, sticks or moves slowly within a few samples of begin .. end, without
-/// those between: where the velocity itself has the spike, they tell nothing.
+/// Whether the joint reverses, sticks or moves slowly within a few samples of begin .. end. The
+/// samples between are ignored, because the velocity itself may have the spike.
 bool turns(const Signal& velocity, double peak_speed, Eigen::Index begin, Eigen::Index end) {
   const Eigen::Index from = std::max<Eigen::Index>(0, begin - kReach);
   const Eigen::Index to = std::min(velocity.size() - 1, end + kReach);
@@ -118,7 +118,8 @@ Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity
     const double highest = base::largest_height(signal.data(), static_cast<std::size_t>(width),
                                                 static_cast<std::size_t>(places));
     if (highest == 0.0) continue;
-    // More than half of the changes beyond this: so is the median, and the limit beyond `highest`.
+    // If more than half of the changes are beyond this, so is the median, and the limit is above
+    // `highest`.
     const double enough = highest / times * (1.0 + kClearly);
     std::int64_t positive = 0;
     std::int64_t beyond = 0;
@@ -141,7 +142,8 @@ Spike largest_spike(const Signal& signal, SpikeRule rule, const Signal& velocity
             ? times * usual
             : std::max(times * usual, share * std::sqrt(static_cast<double>(width)) * range);
     const double at_turn = kAtTurn * range;
-    // Friction steps at a reversal, and with it torque and sensor; a velocity has no reason to.
+    // Friction steps at a reversal, and torque and sensor step with it. A velocity has no reason to
+    // step.
     const bool may_step = rule != SpikeRule::position && signal.data() != velocity.data();
     Spike found;
     for (Eigen::Index k = 0; k < places; ++k) {
@@ -184,7 +186,7 @@ std::int64_t largest_jump(const Signal& time, const Signal& position, const base
       cancel);
   const std::int64_t index = first_at(count, highest, rate);
   if (highest < kJump * usual || index == 0 || index >= count - 1) return -1;
-  // A spike goes back; a jump stays.
+  // A spike returns; a jump stays.
   const auto step = [&](Eigen::Index k) { return std::fabs(position[k + 1] - position[k]); };
   const double beside = std::max(step(index - 1), step(index + 1));
   double finest = std::numeric_limits<double>::infinity();

@@ -1,6 +1,6 @@
 #pragma once
-// Friction of one direction of motion: what is dry, what varies with the speed otherwise, and what
-// viscosity adds.
+// Friction of one direction of motion: the dry part, the part that varies with the speed, and the
+// viscous part.
 
 #include "base/lanes.hpp"
 #include "model/joint.hpp"
@@ -11,11 +11,11 @@ namespace jointid::model {
 template <class Number>
 struct DirectedFriction {
   Number dry;      ///< constant, with the share that grows with the load
-  Number at_rest;  ///< what the varying terms are just off rest
-  Number viscous;  ///< per speed
+  Number at_rest;  ///< the varying terms just above zero speed
+  Number viscous;  ///< per unit of speed
 
   [[nodiscard]] Number breakaway() const { return dry + at_rest; }
-  /// All but viscosity, where the varying terms are `varying`.
+  /// All friction except the viscous part; `varying` is the value of the varying terms.
   [[nodiscard]] Number level(const Number& varying) const { return dry + varying; }
 };
 

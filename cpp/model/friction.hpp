@@ -1,10 +1,11 @@
 #pragma once
 // Static friction maps as sums of linear coefficients times basis functions of the speed:
-// f(v) = sgn v * sum c_i h_i(|v|). (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1)
-// Coulomb + static excess with Gaussian decay + viscous are such sums; only a decay and a rise have
-// shape parameters. A basis owns value, slopes, unit and how exports write it; a new one is a row
-// and a case in each function here, and a row in identify/balance/terms.cpp. Fits, simulation,
-// design, exports and pages follow.
+// f(v) = sgn v * sum c_i h_i(|v|).
+// (2-1) Coulomb + viscous, (2-3) Stribeck with exponent and (4-1) Coulomb + static excess with
+// Gaussian decay + viscous are such sums. Only a decay and a rise have shape parameters. A basis
+// has a value, slopes, a unit and its text for exports. A new basis needs a case in each function
+// here, and a row in identify/balance/terms.cpp. Fits, simulation, design, exports and pages
+// follow.
 
 #include <array>
 #include <cstddef>
@@ -25,19 +26,20 @@ enum class SpeedBasis {
   rising,    ///< tanh(|v|/v_r), v_r [rad/s]: Coulomb friction that rises smoothly with speed
 };
 
-constexpr std::size_t kMostShapes = 2;  ///< parameters of a basis
+constexpr std::size_t kMostShapes = 2;  ///< most shape parameters of a basis
 
 /// The direction of motion in which a term acts.
 enum class Direction { both, positive, negative };
 
-/// What does not depend on a speed.
+/// Facts about a basis that do not depend on the speed.
 struct BasisFacts {
-  const char* unit;  ///< of a coefficient: torque over the basis's unit
+  const char* unit;  ///< unit of a coefficient: torque over the basis's unit
   const char* unit_prismatic;
   double at_rest;            ///< h(0)
-  bool settles = false;      ///< whether h is 1 in fast motion, as of Coulomb friction
+  bool settles = false;      ///< whether h is 1 in fast motion, as for Coulomb friction
   bool shape_above = false;  ///< whether its shape parameters must be above 0, not 0
-  /// h as a product, in the notation of C: `speed`, {0} and {1} are speed and shapes. Empty: 1.
+  /// h as a product, in the notation of C: `speed` is the speed, {0} and {1} are the shapes. Empty:
+  /// 1.
   const char* expression = "";
 };
 inline const BasisFacts& facts_of(SpeedBasis basis) {
@@ -65,10 +67,10 @@ inline const BasisFacts& facts_of(SpeedBasis basis) {
   return kFacts.at(static_cast<std::size_t>(basis));
 }
 
-/// log |v|; for a joint at rest a number so low that any power of the speed is 0.
+/// log |v|. For a joint at rest, a number so low that any power of the speed is 0.
 inline double log_speed(double speed) {
   constexpr double least = std::numeric_limits<double>::min();
-  const double rest = speed >= least ? 0.0 : -1e6;  // added, since a choice would be a branch
+  const double rest = speed >= least ? 0.0 : -1e6;  // added, because a choice would be a branch
   return base::log_normal(speed >= least ? speed : least) + rest;
 }
 
@@ -82,13 +84,13 @@ struct GeneralDecay {
 inline GeneralDecay general_decay(double scaled, double velocity, double exponent) {
   const double wanted = exponent * scaled;
   const double lowest = wanted > -600.0 ? wanted : -600.0;
-  const double power = base::exp_short(lowest < 7.0 ? lowest : 7.0);  // e^-1096 is 0 anyway
+  const double power = base::exp_short(lowest < 7.0 ? lowest : 7.0);  // e^-1096 is 0
   const double value = base::exp_decay(power);
   const double slope = value * power;
   return {value, slope * exponent / velocity, -slope * scaled};
 }
 
-/// h(|v|) for one speed or several lanes; `shapes` holds as many values as the basis has.
+/// h(|v|) for one speed or several lanes; `shapes` holds the shapes of the basis.
 template <class Number>
 Number basis_value(SpeedBasis basis, const Number& speed, const Number* shapes) {
   switch (basis) {

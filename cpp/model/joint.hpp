@@ -1,7 +1,6 @@
 #pragma once
-// A joint as it is simulated: the drive's inertia, its friction, what hangs on it. For one number
-// or for several lanes: the structure (bases of friction, bristles, harmonics) is common to all
-// lanes, the numbers are not.
+// A simulated joint: the drive's inertia, its friction and its load. For one number or for several
+// lanes. All lanes share the structure (friction bases, bristles, harmonics), but not the numbers.
 
 #include <array>
 #include <vector>
@@ -27,21 +26,21 @@ struct HarmonicOf {
   Number sin = 0.0;
 };
 
-/// What the torque of gravity of one mass is: weight · cos(q + angle).
+/// Gravity torque of one mass: weight · cos(q + angle).
 template <class Number>
 struct WeightOf {
   Number torque = 0.0;  ///< mass · gravity · distance [N·m]
   Number angle = 0.0;   ///< [rad]
 };
 
-/// Output side of the gear, SI.
+/// Output side of the gear, SI units.
 template <class Number>
 struct JointOf {
   Number inertia = 1.0;       ///< of the drive
   Number link_inertia = 0.0;  ///< behind the torque sensor
   Number load = 0.0;          ///< constant torque behind the sensor that resists positive motion
   Number torque_offset = 0.0;
-  Number torque_limit = 1e300;  ///< of the drive, on the magnitude
+  Number torque_limit = 1e300;  ///< of the drive, limit on the magnitude
 
   std::vector<FrictionOf<Number>> friction{};
   Number load_friction = 0.0;  ///< dry friction per torque of the drive
@@ -51,7 +50,7 @@ struct JointOf {
   Number bristle_damping = 0.0;
 
   std::vector<WeightOf<Number>> weights{};
-  std::vector<HarmonicOf<Number>> harmonics{};  ///< in the drive: the sensor does not see them
+  std::vector<HarmonicOf<Number>> harmonics{};  ///< in the drive: the sensor does not measure them
 
   void validate() const;
 };
@@ -61,7 +60,7 @@ using Friction = FrictionOf<double>;
 using Weight = WeightOf<double>;
 using Harmonic = HarmonicOf<double>;
 
-/// Calls visit(number of a, number of b) for all numbers of two joints of one structure.
+/// Calls visit(number of a, number of b) for all numbers of two joints with the same structure.
 template <class A, class B, class Visit>
 void each_number(A& a, B& b, Visit visit) {
   visit(a.inertia, b.inertia);
@@ -88,7 +87,7 @@ void each_number(A& a, B& b, Visit visit) {
   }
 }
 
-/// Whether two joints differ in numbers only, so that they can be lanes of one.
+/// Whether two joints differ only in numbers, so that they can be lanes of one joint.
 bool same_structure(const Joint& a, const Joint& b);
 
 }  // namespace jointid::model

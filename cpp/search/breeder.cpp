@@ -11,8 +11,8 @@ namespace jointid::search {
 
 namespace {
 
-// An individual's draws for mutation begin here, whatever the selection and crossing of its pair
-// have drawn.
+// An individual's draws for mutation begin here, independent of the draws for selection and
+// crossover of its pair.
 constexpr std::uint32_t kMutationDraws = std::uint32_t{1} << 19U;
 
 }  // namespace
@@ -84,7 +84,7 @@ void Breeder::cross(base::Random& random, double* one, double* two, Eigen::Index
   }
 }
 
-/// All powers of a generation in one loop, which vectorises.
+/// All powers of a generation are in one loop, which vectorises.
 void Breeder::finish_crossings() {
   spread_factors(spreads_.data(), spreads_.size(), options_.crossover_eta);
   for (std::size_t i = 0; i < crossings_.size(); ++i) {

@@ -1,5 +1,5 @@
 #pragma once
-// From one generation to the next: parents are drawn in pairs, crossed, mutated.
+// The step from one generation to the next: parents are drawn in pairs, crossed and mutated.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,8 +12,9 @@
 namespace jointid::search {
 
 /// Makes the individuals of a run. Every draw is a function of (seed, trial, generation,
-/// individual), where individuals are numbered through all islands: `offset` is an island's first.
-/// One a thread: it keeps its buffers, so that a generation allocates nothing.
+/// individual). Individuals are numbered through all islands; `offset` is the first one of an
+/// island. Use one breeder per thread: it keeps its buffers, so that a generation allocates
+/// nothing.
 class Breeder {
  public:
   Breeder(const GaOptions& options, std::uint64_t seed, std::uint32_t trial)
@@ -22,13 +23,13 @@ class Breeder {
   /// Uniform over the domain.
   void first(Eigen::MatrixXd& genes) const;
 
-  /// One island's children; `generation` is theirs, at least 1.
+  /// Breeds one island's children; `generation` is the children's, at least 1.
   void next(int generation, const Probabilities& probabilities, const Selector& select,
             const Eigen::Ref<const Eigen::MatrixXd>& parents, Eigen::Index offset,
             Eigen::Ref<Eigen::MatrixXd> children);
 
  private:
-  /// A gene that a pair of children will cross, once its spread factor is known.
+  /// A gene that a pair of children will cross when its spread factor is known.
   struct Crossing {
     double* one;
     double* two;
@@ -46,8 +47,8 @@ class Breeder {
   std::uint64_t seed_;
   std::uint32_t trial_;
   Eigen::VectorXd spare_;            ///< the second child of an odd last pair
-  std::vector<Crossing> crossings_;  ///< of the generation
-  std::vector<double> spreads_;      ///< theirs: draws, then factors
+  std::vector<Crossing> crossings_;  ///< powers of the generation
+  std::vector<double> spreads_;      ///< of these genes: first the draws, then the factors
 };
 
 }  // namespace jointid::search

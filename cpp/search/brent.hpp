@@ -1,6 +1,6 @@
 #pragma once
 // The minimum of a function of one variable in an interval (Brent 1973, chapter 5): parabolas
-// through the last points, golden sections where they fail.
+// through the last points, and golden sections where parabolas fail.
 
 #include <functional>
 
@@ -11,8 +11,8 @@ struct Interval {
   double right;
 };
 
-/// Where the lowest value was found, to an absolute tolerance: a local minimum of the interval. The
-/// ends themselves are not evaluated.
+/// The point of the lowest value found, to an absolute tolerance: a local minimum of the interval.
+/// The ends of the interval are not evaluated.
 double minimise_brent(const std::function<double(double)>& value, Interval interval,
                       double tolerance);
 

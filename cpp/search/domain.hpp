@@ -1,5 +1,5 @@
 #pragma once
-// Where a search may look: a box. A parameter whose bounds are equal is fixed.
+// The domain of a search: a box. A parameter with equal bounds is fixed.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -28,7 +28,7 @@ struct Domain {
     }
   }
 
-  /// Indices of the parameters that may move.
+  /// Indices of the free parameters.
   [[nodiscard]] std::vector<Eigen::Index> free() const {
     std::vector<Eigen::Index> indices;
     for (Eigen::Index i = 0; i < size(); ++i) {

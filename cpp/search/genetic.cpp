@@ -13,7 +13,7 @@ namespace jointid::search {
 
 namespace {
 
-// Individuals whose breeding takes longer than waking the threads.
+// From this number of individuals on, breeding takes longer than waking the threads.
 constexpr Eigen::Index kWorthThreads = 2000;
 
 class Run {
@@ -96,7 +96,7 @@ class Run {
     return penalties.segment(island * state_.options.population, state_.options.population);
   }
 
-  /// On the calling thread when there is little to do; no bit depends on that.
+  /// On the calling thread if there is little to do; no bit depends on that.
   template <class Work>
   void each_island(const Work& work) {
     if (islands_.size() == 1 || individuals(state_.options) < kWorthThreads) {
@@ -118,7 +118,7 @@ class Run {
     observe();
   }
 
-  /// Diversity, and the probabilities it asks for.
+  /// Diversity, and the probabilities that follow from it.
   void observe() {
     for (std::size_t i = 0; i < islands_.size(); ++i) {
       auto& island = islands_[i];
@@ -149,7 +149,7 @@ class Run {
     state_.history.push_back(now);
   }
 
-  /// Each island's best, as it was before, takes the place of the next island's worst.
+  /// Each island's best, from before the migration, replaces the next island's worst.
   void migrate() {
     const Eigen::Index count = state_.options.population;
     if (islands_.size() == 1 || state_.generation == 0 ||
@@ -164,7 +164,7 @@ class Run {
       best.push_back(island * count + order.front());
       worst.push_back(island * count + order.back());
     }
-    // No place is both: at least four individuals, and the order breaks ties.
+    // No individual is both best and worst: there are at least four, and the order breaks ties.
     for (std::size_t i = 0; i < islands_.size(); ++i) {
       const auto to = worst[(i + 1) % islands_.size()];
       population_.genes.col(to) = population_.genes.col(best[i]);
@@ -181,7 +181,7 @@ class Run {
       return;
     }
     throw base::InputError("the state's best has penalty " + base::with_digits(state_.penalty, 10) +
-                               " there and " + base::with_digits(again[0], 10) +
+                               " in its own run and " + base::with_digits(again[0], 10) +
                                " here; it belongs to another recording, model or windows",
                            "resume");
   }
@@ -212,7 +212,7 @@ GaResult minimise_genetic(const Objective& objective, const Domain& domain,
   fresh ? run.start() : run.resume(*continuation.resume);
   GaResult result;
   for (;; fresh = true) {
-    if (fresh) {  // what a resumed run begins with was reported before
+    if (fresh) {  // the start of a resumed run was reported before
       pool.poll();
       const bool due = run.generation() > 0 && run.generation() % continuation.interval == 0;
       if (continuation.checkpoint && due) continuation.checkpoint(run.state());

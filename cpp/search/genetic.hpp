@@ -25,7 +25,7 @@ namespace jointid::search {
 
 enum class Stop { generations, converged, observer };
 
-/// Called on the calling thread between generations; true stops.
+/// Called on the calling thread between generations. Returning true stops the search.
 using Observer = std::function<bool(const Generation&)>;
 
 struct GaResult {
@@ -34,20 +34,21 @@ struct GaResult {
   std::vector<Generation> history;
   std::int64_t evaluations = 0;
   Stop stop = Stop::generations;
-  std::optional<GaState> state;  ///< from which the run can go on; a random search has none
+  std::optional<GaState>
+      state;  ///< state from which the run can continue; none after a random search
 };
 
 /// A long run in parts.
 struct Continuation {
-  const GaState* resume = nullptr;  ///< go on from here instead of starting
+  const GaState* resume = nullptr;  ///< continue from here instead of starting
   /// Called on the calling thread after every `interval` generations, before the observer.
   std::function<void(const GaState&)> checkpoint;
   int interval = 50;
 };
 
-/// The same bits for a seed and trial, whatever the number of threads, and whether in one run or
-/// resumed: every draw is a function of (seed, trial, generation, individual), and penalties do not
-/// depend on who computes them.
+/// A seed and trial give the same bits, for any number of threads, in one run or resumed. Every
+/// draw is a function of (seed, trial, generation, individual), and penalties do not depend on the
+/// thread that computes them.
 GaResult minimise_genetic(const Objective& objective, const Domain& domain,
                           const GaOptions& options, std::uint64_t seed, std::uint32_t trial,
                           base::Pool& pool, const Observer& observer,

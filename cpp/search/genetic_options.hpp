@@ -21,15 +21,15 @@ enum class MutationUnit { gene, individual };
 enum class Diversity { penalty, fitness };
 
 struct GaOptions {
-  int population = 24;   ///< individuals of an island, at least 4
-  int generations = 40;  ///< at most, after the first population
+  int population = 24;   ///< individuals per island, at least 4
+  int generations = 40;  ///< largest number after the first population
   Coding coding = Coding::real;
-  int bits = 16;  ///< of a gene (binary coding)
+  int bits = 16;  ///< per gene (binary coding)
 
   Selection selection = Selection::tournament;
-  int tournament = 2;                         ///< individuals that compete for each parent place
-  double rank_pressure = 1.5;                 ///< expected copies of the best (rank selection)
-  Fitness fitness = Fitness::inverse_square;  ///< what roulette selects by
+  int tournament = 2;          ///< individuals that compete for each parent place
+  double rank_pressure = 1.5;  ///< expected copies of the best individual (rank selection)
+  Fitness fitness = Fitness::inverse_square;  ///< measure that the roulette uses
   int elite = 2;                              ///< best individuals that survive unchanged
 
   Crossover crossover = Crossover::sbx;
@@ -38,36 +38,37 @@ struct GaOptions {
   double crossover_gene_probability = 0.5;  ///< of a gene in a pair that crosses
   /// SBX distribution index: larger keeps children nearer their parents
   double crossover_eta = 5.0;
-  double blx_alpha = 0.5;                  ///< how far beyond its parents BLX reaches
-  Uncrossed uncrossed = Uncrossed::mates;  ///< who takes the places of a pair that does not cross
+  double blx_alpha = 0.5;  ///< reach of BLX beyond the parents, in units of their distance
+  Uncrossed uncrossed = Uncrossed::mates;  ///< individuals that replace a pair that does not cross
 
   Mutation mutation = Mutation::non_uniform;
   double mutation_probability = 0.1;  ///< of a gene or of an individual
   MutationUnit mutation_unit = MutationUnit::gene;
-  double mutation_exponent = 2.0;  ///< how fast mutation steps shrink over the generations
-  double mutation_eta = 20.0;      ///< distribution index of polynomial mutation
+  double mutation_exponent =
+      2.0;                     ///< exponent with which mutation steps shrink over the generations
+  double mutation_eta = 20.0;  ///< distribution index of polynomial mutation
 
-  bool adaptive = false;                     ///< move both probabilities with the diversity measure
-  Diversity diversity = Diversity::penalty;  ///< the measure: 1 when all are alike
+  bool adaptive = false;                     ///< adapt both probabilities to the diversity measure
+  Diversity diversity = Diversity::penalty;  ///< the measure: 1 when all are equal
   double diversity_low = 0.7;                ///< the measure at which adaptation begins
-  double diversity_high = 0.95;              ///< the measure at which it is complete
-  double crossover_probability_alike = 0.8;  ///< reached then
-  double mutation_probability_alike = 0.2;   ///< reached then
+  double diversity_high = 0.95;              ///< the measure at which adaptation is complete
+  double crossover_probability_alike = 0.8;  ///< at `diversity_high`
+  double mutation_probability_alike = 0.2;   ///< at `diversity_high`
 
-  int islands = 1;              ///< populations side by side, in a ring
+  int islands = 1;              ///< number of populations, in a ring
   int migration_interval = 20;  ///< generations between migrations
 
-  double tolerance = 1e-10;  ///< stop when the spread (worst - best) / best falls below; 0: never
+  double tolerance = 1e-10;  ///< stop when the spread (worst - best) / best is below this; 0: never
   bool polish = true;        ///< end with a local least-squares search from the best individual
 
   void validate() const;
-  /// The algorithm the thesis describes.
+  /// The algorithm that the thesis describes.
   static GaOptions thesis();
-  /// The algorithm of its MATLAB listing, which differs.
+  /// The different algorithm of the thesis's MATLAB listing.
   static GaOptions thesis_code();
 };
 
-/// Calls visit(name, member) for every field, in order: what is stored and compared.
+/// Calls visit(name, member) for every field, in the order of storage and comparison.
 template <class Options, class Visit>
 void each_field(Options& o, Visit visit) {
   visit("population", o.population);

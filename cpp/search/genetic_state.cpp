@@ -73,7 +73,7 @@ class Reader {
   std::string_view rest_;
 };
 
-/// Every kind of field (flag, count, choice, number) as a number, exactly.
+/// Writes every kind of field (flag, count, choice, number) exactly, as a number.
 template <class Field>
 double number_of(const Field& field) {
   return static_cast<double>(field);

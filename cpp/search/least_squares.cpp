@@ -12,12 +12,13 @@ namespace jointid::search {
 namespace {
 
 constexpr double kRidge =
-    1e-9;  // on unit columns: changes a well-posed answer by 1e-18 relative to its conditioning
-constexpr double kLacking = 1e-12;  // of a scaled direction: normal equations may lack one
-constexpr double kSlack = 1e-9;     // of scaled values and gradients of about 1
-constexpr int kTogether = 12;       // exchanges between held and free
+    1e-9;  // on unit columns: changes a well-posed solution by 1e-18 relative to its conditioning
+constexpr double kLacking =
+    1e-12;                       // of a scaled direction: the normal equations may lack a direction
+constexpr double kSlack = 1e-9;  // of scaled values and gradients, which are about 1
+constexpr int kTogether = 12;    // exchanges between fixed and free parameters
 constexpr double kViolation =
-    1e-7;  // of the distance moved: beyond, no x satisfies all constraints
+    1e-7;  // of the distance moved: beyond it, no x satisfies all constraints
 
 Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b,
                               const std::vector<Eigen::Index>& set) {
@@ -27,13 +28,13 @@ Eigen::VectorXd solve_columns(const Eigen::MatrixXd& a, const Eigen::VectorXd& b
   return base::least_squares(part, b);
 }
 
-/// A quadratic function in a box, and how far its minimum is found.
+/// A quadratic function in a box, and the state of the search for its minimum.
 struct Box {
   const Eigen::MatrixXd& square;
   const Eigen::VectorXd& slope;
   Eigen::VectorXd low;
   Eigen::VectorXd high;
-  Eigen::VectorXi side;  ///< -1, 1: held at the lower, upper bound
+  Eigen::VectorXi side;  ///< -1, 1: fixed at the lower, upper bound
   Eigen::VectorXd x;
 };
 
@@ -45,7 +46,7 @@ std::vector<Eigen::Index> free_of(const Box& box) {
   return free;
 }
 
-/// The minimum over the free ones, the others where they are held.
+/// The minimum over the free parameters, with the others at their bounds.
 Eigen::VectorXd minimum_of(const Box& box, const std::vector<Eigen::Index>& free) {
   Eigen::VectorXd held = box.x;
   for (const Eigen::Index i : free) held[i] = 0.0;
@@ -54,11 +55,12 @@ Eigen::VectorXd minimum_of(const Box& box, const std::vector<Eigen::Index>& free
   Eigen::MatrixXd damped = own;
   damped.diagonal().array() += kLacking;
   const Eigen::VectorXd part = base::solve_semidefinite(damped, right);
-  // Once more with what is left: the damping then counts in directions that are lacking only.
+  // A second pass for the remainder. The damping then acts only in directions that are lacking.
   return part + base::solve_semidefinite(damped, right - own * part);
 }
 
-/// Holds what is outside and frees what the gradient pulls inside, all together: whether that ends.
+/// Fixes all parameters outside the box and frees all that the gradient pulls inside, together.
+/// Returns whether this ends.
 bool exchanged(Box& box) {
   for (int step = 0; step < kTogether; ++step) {
     for (Eigen::Index i = 0; i < box.side.size(); ++i) {
@@ -84,7 +86,7 @@ bool exchanged(Box& box) {
   return false;
 }
 
-/// From a point inside, one bound after the other: the function never rises, so that this ends.
+/// From a point inside, changes one bound at a time. The function never rises, so this ends.
 void one_by_one(Box& box) {
   const Eigen::Index n = box.side.size();
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -163,8 +165,8 @@ Eigen::VectorXd non_negative_least_squares(const Eigen::MatrixXd& a, const Eigen
         for (std::size_t j = 0; j < set.size(); ++j) x[set[j]] = part[static_cast<Eigen::Index>(j)];
         break;
       }
-      // Go as far towards the unconstrained answer as all stay non-negative; what reaches zero
-      // leaves.
+      // Moves towards the unconstrained solution as far as all values stay non-negative. A value
+      // that reaches zero leaves the set.
       double reach = 1.0;
       for (std::size_t j = 0; j < set.size(); ++j) {
         const double target = part[static_cast<Eigen::Index>(j)];
@@ -193,7 +195,7 @@ Eigen::VectorXd box_minimum(const Eigen::MatrixXd& square, const Eigen::VectorXd
   }
   const Eigen::VectorXd inverse = size.cwiseInverse();
   const Eigen::MatrixXd scaled = inverse.asDiagonal() * square * inverse.asDiagonal();
-  // Values of about 1, by a power of two, which rounds nothing.
+  // Scales values to about 1 by a power of two, without rounding.
   Eigen::VectorXd slope = gradient.cwiseProduct(inverse);
   const double largest = n > 0 ? slope.cwiseAbs().maxCoeff() : 0.0;
   const double unit = largest > 0.0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1.0;
@@ -243,15 +245,15 @@ LeastSquaresResult constrained_least_squares(const Eigen::MatrixXd& a, const Eig
   const Eigen::MatrixXd distance =
       base::solve_lower(upper.transpose(), scaled.transpose()).transpose();
   Eigen::VectorXd offset = h - distance * f;
-  // In units of the farthest single constraint, so that |z| is not far from 1 whatever the units of
-  // the data: the method finds |z|^2 only to rounding of 1.
+  // In units of the farthest single constraint, so that |z| is near 1 for any units of the data.
+  // The method finds |z|^2 only to the rounding of 1.
   double reach = 0.0;
   for (Eigen::Index i = 0; i < g.rows(); ++i) {
     const double norm = distance.row(i).norm();
     if (norm > 0.0) reach = std::max(reach, offset[i] / norm);
   }
   if (reach > 0.0) offset /= reach;
-  // Rows of unit norm: bounds of large and small parameters weigh the same.
+  // Rows of unit norm, so that bounds of large and small parameters have the same weight.
   Eigen::MatrixXd dual(n + 1, g.rows());
   for (Eigen::Index i = 0; i < g.rows(); ++i) {
     const double norm = std::hypot(distance.row(i).norm(), offset[i]);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kTolerance = 1e-14;
 
-/// Parameters that may move now: free, and not held at a bound by the gradient.
+/// Parameters that can move now: free, and not pressed against a bound by the gradient.
 std::vector<Eigen::Index> movable(const Domain& domain, const Eigen::VectorXd& theta,
                                   const Eigen::VectorXd& gradient) {
   std::vector<Eigen::Index> indices;
@@ -69,7 +69,7 @@ PolishResult polish(const ResidualFunction& residuals, const Domain& domain,
       break;
     }
     const Eigen::VectorXd step = damped_step(jacobian, residual, columns, damping);
-    // Projecting the step keeps the box; a parameter that hits its bound is held from the next
+    // Projecting the step keeps the box. A parameter that hits its bound is fixed from the next
     // iteration on.
     const Eigen::VectorXd trial =
         (result.best + step).cwiseMax(domain.lower).cwiseMin(domain.upper);
@@ -85,7 +85,7 @@ PolishResult polish(const ResidualFunction& residuals, const Domain& domain,
       damping = std::max(damping * 0.1, 1e-15);
     } else {
       damping = damping * 10.0;
-      // A step that rounding alone turns uphill is an answer, too.
+      // A step that only rounding turns uphill also ends the search.
       if (damping > 1e8) settled = 2;
       if (penalty - result.penalty <= kTolerance * result.penalty) ++settled;
     }

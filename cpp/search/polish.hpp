@@ -1,6 +1,6 @@
 #pragma once
-// A local search for a sum of squares in a box: Levenberg-Marquardt with the bounds kept by an
-// active set.
+// A local search for the minimum of a sum of squares in a box: Levenberg-Marquardt with an active
+// set for the bounds.
 
 #include <Eigen/Core>
 #include <functional>
@@ -10,7 +10,7 @@
 
 namespace jointid::search {
 
-/// Residuals at theta, and when asked (not null) the Jacobian, rows x parameters.
+/// Computes the residuals at theta and, if it is not null, the Jacobian, rows x parameters.
 using ResidualFunction =
     std::function<void(const Eigen::VectorXd&, Eigen::VectorXd&, Eigen::MatrixXd*)>;
 
@@ -21,8 +21,8 @@ struct PolishResult {
   bool converged = false;  ///< the next step would change the penalty by less than 1e-14 of it
 };
 
-/// Starts inside the domain; never returns anything worse than the start. `pool` is asked between
-/// iterations only.
+/// Starts inside the domain and never returns a point worse than the start. The poll of `pool` runs
+/// only between iterations.
 PolishResult polish(const ResidualFunction& residuals, const Domain& domain,
                     const Eigen::VectorXd& start, base::Pool& pool, int iterations = 200);
 

@@ -23,13 +23,13 @@ void Population::evaluate(const Objective& objective, base::Pool& pool) {
     for (std::size_t j = 0; j < free_.size(); ++j) {
       const double low = lower_[j];
       const double high = upper_[j];
-      // Convex form: stays inside the bounds to the last bit.
+      // Convex form: stays within the bounds to the last bit.
       const double value = (1.0 - gene[j]) * low + gene[j] * high;
       candidate[free_[j]] = value < low ? low : (value > high ? high : value);
     }
   }
   objective(candidates_, penalties, pool);
-  // A penalty that is not a number must lose.
+  // NaN must lose every comparison.
   for (double& penalty : penalties) {
     if (!(penalty == penalty)) penalty = std::numeric_limits<double>::infinity();
   }

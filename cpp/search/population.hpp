@@ -1,6 +1,6 @@
 #pragma once
-// Individuals and their penalties: genes in [0, 1], one individual a column, placed in the domain
-// to be evaluated.
+// Individuals and their penalties. Genes lie in [0, 1], one individual per column, and are scaled
+// to the domain for evaluation.
 
 #include <Eigen/Core>
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace jointid::search {
 
-/// Penalties of candidates, one a column.
+/// Computes the penalties of candidates, one per column.
 using Objective = std::function<void(const Eigen::MatrixXd&, Eigen::VectorXd&, base::Pool&)>;
 
 class Population {
@@ -19,17 +19,17 @@ class Population {
   Population(const Domain& domain, Eigen::Index count);
 
   Eigen::MatrixXd genes;      ///< free parameters x individuals
-  Eigen::VectorXd penalties;  ///< never NaN: what is not a number counts as infinite
+  Eigen::VectorXd penalties;  ///< never NaN: NaN counts as infinite
 
   void evaluate(const Objective& objective, base::Pool& pool);
-  /// An individual's parameters, as they were evaluated.
+  /// An individual's parameters, as evaluated.
   [[nodiscard]] Eigen::VectorXd candidate(Eigen::Index individual) const {
     return candidates_.col(individual);
   }
 
  private:
   std::vector<Eigen::Index> free_;
-  std::vector<double> lower_;  ///< of the free parameters
+  std::vector<double> lower_;  ///< indices of the free parameters
   std::vector<double> upper_;
   Eigen::MatrixXd candidates_;
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Pure random search, kept as a comparison: as many candidates as the genetic algorithm would
-// evaluate, uniform over the domain.
+// Pure random search, kept for comparison: the same number of candidates as the genetic algorithm
+// would evaluate, uniform over the domain.
 
 #include <cstdint>
 
@@ -8,8 +8,8 @@
 
 namespace jointid::search {
 
-/// Of the options only population, islands and generations matter: batches of population * islands,
-/// generations + 1 of them. The same bits for a seed and trial, whatever the number of threads.
+/// Uses only population, islands and generations of the options: generations + 1 batches of
+/// population * islands. A seed and trial give the same bits for any number of threads.
 GaResult minimise_random(const Objective& objective, const Domain& domain, const GaOptions& options,
                          std::uint64_t seed, std::uint32_t trial, base::Pool& pool,
                          const Observer& observer);

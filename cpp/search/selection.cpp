@@ -8,7 +8,8 @@ namespace jointid::search {
 
 namespace {
 
-/// Penalty over the least (1 at best), so that no power overflows; the least's own where it is 0.
+/// Penalty over the least penalty (1 at best), so that no power overflows. If the least penalty is
+/// 0, the penalty itself.
 double relative(double least, double penalty) {
   return penalty == least ? 1.0 : least / penalty;
 }
@@ -28,7 +29,7 @@ void each_sum_minus(const Penalties& penalties, Take take) {
     return std::isfinite(p) ? std::max(0.0, sum - std::max(0.0, p) * unit) : 0.0;
   };
   for (const double p : penalties) best = std::max(best, of(p));
-  // All penalties zero, or a single finite one: any finite individual.
+  // All penalties are zero, or only one is finite: any finite individual is chosen.
   for (const double p : penalties) take(best > 0.0 ? of(p) : (std::isfinite(p) ? 1.0 : 0.0));
 }
 
@@ -52,7 +53,7 @@ void each_fitness(Fitness fitness, const Penalties& penalties, Take take) {
 std::vector<Eigen::Index> ranked(const Penalties& penalties) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(penalties.size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});
-  // Ties must not depend on the sort.
+  // Ties must not depend on the sorting algorithm.
   std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
     return penalties[a] != penalties[b] ? penalties[a] < penalties[b] : a < b;
   });
@@ -117,7 +118,7 @@ void Selector::prepare(const Penalties& penalties) {
   index_shares();
 }
 
-/// The few best by insertion: a sort of all would cost more than the rest of breeding.
+/// The few best individuals by insertion: sorting all would cost more than the rest of breeding.
 void Selector::find_elite() {
   const auto wanted = static_cast<std::size_t>(options_.elite);
   elite_.clear();
@@ -140,7 +141,7 @@ void Selector::find_elite() {
   }
 }
 
-/// A draw then starts its search a step or two from where it ends (Chen and Asau 1974).
+/// A draw then starts its search a step or two before its end (Chen and Asau 1974).
 void Selector::index_shares() {
   const auto count = shares_.size();
   guide_.resize(count);
@@ -165,7 +166,7 @@ Eigen::Index Selector::operator()(base::Random& random) const {
   const double u = random.uniform();
   const double wanted = u * shares_.back();
   auto place = static_cast<std::size_t>(guide_[static_cast<std::size_t>(u * count)]);
-  // The guide's own rounding may have it start one too far.
+  // Rounding of the guide may start it one place too far.
   while (place > 0 && shares_[place - 1] >= wanted) --place;
   while (place + 1 < shares_.size() && shares_[place] < wanted) ++place;
   return options_.selection == Selection::roulette ? static_cast<Eigen::Index>(place)

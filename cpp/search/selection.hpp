@@ -1,5 +1,5 @@
 #pragma once
-// Who becomes a parent, and how often a population crosses and mutates.
+// Selection of parents, and the probabilities of crossover and mutation.
 
 #include <Eigen/Core>
 #include <vector>
@@ -11,16 +11,16 @@ namespace jointid::search {
 
 using Penalties = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Individuals from best to worst; equal ones in their own order.
+/// Individuals from best to worst; equal ones in their original order.
 std::vector<Eigen::Index> ranked(const Penalties& penalties);
 
-/// Fitness of each individual, in units that differ between populations (roulette asks for shares
-/// only): 1/P^2 (thesis 4.7), 1/P, or sum P - P (its listing). An infinite penalty has fitness 0, a
-/// negative one counts as zero.
+/// Fitness of each individual: 1/P^2 (thesis 4.7), 1/P, or sum P - P (thesis's listing). Its unit
+/// differs between populations, because roulette needs only shares. An infinite penalty has fitness
+/// 0; a negative penalty counts as zero.
 Eigen::VectorXd fitness_of(Fitness fitness, const Penalties& penalties);
 
-/// The thesis's genetic diversity measure (3.2.2), near 0 when few are good and 1 when all are
-/// alike: mean/max of the fitness, or min/mean of the penalty (its listing).
+/// The thesis's genetic diversity measure (3.2.2): near 0 when few individuals are good, and 1 when
+/// all are equal. It is mean/max of the fitness, or min/mean of the penalty (thesis's listing).
 double diversity_of(const GaOptions& options, const Penalties& penalties);
 
 struct Probabilities {
@@ -28,11 +28,11 @@ struct Probabilities {
   double mutation;
 };
 
-/// Linear between diversity_low and diversity_high, constant outside; constant when not adaptive.
+/// Linear between diversity_low and diversity_high, constant outside; constant without `adaptive`.
 Probabilities adapted(const GaOptions& options, double diversity);
 
-/// Draws parents from an evaluated population. Kept from one generation to the next, it allocates
-/// nothing after the first.
+/// Draws parents from an evaluated population. Reused from generation to generation, it allocates
+/// only in the first.
 class Selector {
  public:
   explicit Selector(const GaOptions& options) : options_(options) {}
@@ -40,11 +40,11 @@ class Selector {
     prepare(penalties);
   }
 
-  /// Turns to a population; its penalties must outlive the draws.
+  /// Switches to a population. Its penalties must outlive the draws.
   void prepare(const Penalties& penalties);
-  /// An individual's number.
+  /// The index of an individual.
   [[nodiscard]] Eigen::Index operator()(base::Random& random) const;
-  /// The best individuals, as many as the options' elite, best first.
+  /// The `elite` best individuals, best first.
   [[nodiscard]] const std::vector<Eigen::Index>& elite() const { return elite_; }
 
  private:
@@ -62,7 +62,7 @@ class Selector {
   std::vector<Eigen::Index> elite_;
   std::vector<Eigen::Index> order_;   ///< by rank (rank selection)
   std::vector<double> shares_;        ///< running sums: by individual (roulette) or by rank
-  std::vector<std::uint32_t> guide_;  ///< for each of `count` equal parts, where its shares begin
+  std::vector<std::uint32_t> guide_;  ///< start of the shares in each of `count` equal parts
 };
 
 }  // namespace jointid::search

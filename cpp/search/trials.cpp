@@ -15,8 +15,8 @@ std::int64_t budget(const GaOptions& options) {
   return std::int64_t{options.population} * options.islands * (options.generations + 1);
 }
 
-/// Longest first: the last ones then fill the gaps. Of equal ones the first is first; a stable sort
-/// would need a buffer, which clang with an older library calls deprecated.
+/// Longest first: short ones then fill the gaps. Equal ones keep their order. A stable sort would
+/// need a buffer that clang with an older library calls deprecated.
 std::vector<std::size_t> by_length(const std::vector<Trial>& trials) {
   std::vector<std::size_t> order(trials.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -1,6 +1,6 @@
 #pragma once
-// Many searches of one penalty: each on one thread, side by side over the pool's workers. What a
-// population needs a hundred threads for, a study does with as many as there are cores.
+// Many searches of one penalty in parallel, each on one thread of the pool. One search per core is
+// faster than all cores on one search.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -15,7 +15,7 @@ struct Trial {
   std::uint64_t seed = 0;
 };
 
-/// What is left of a search when thousands are kept: no history, no state.
+/// Short result of a search, without history and state, because thousands are kept.
 struct TrialResult {
   Eigen::VectorXd best;
   double penalty = 0.0;
@@ -26,8 +26,8 @@ struct TrialResult {
 
 enum class Searcher { genetic, random };
 
-/// One result a trial, in their order: the same bits as each search for itself, whatever the number
-/// of threads. Throws what the pool's poll throws, within one evaluation.
+/// Returns one result per trial, in their order. The bits are those of separate searches, for any
+/// number of threads. Throws what the pool's poll throws, within the time of one evaluation.
 std::vector<TrialResult> minimise_trials(const Objective& objective, const Domain& domain,
                                          const std::vector<Trial>& trials, Searcher searcher,
                                          base::Pool& pool);

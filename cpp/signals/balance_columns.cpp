@@ -19,25 +19,27 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kLongestDecay = 0.4;  // Stribeck speed, of the peak speed; each next one is half
+constexpr double kLongestDecay =
+    0.4;  // longest Stribeck speed over the peak speed; each next one is half
 constexpr std::size_t kDecays = 6;
 constexpr std::size_t kFriction = 10 + kDecays;
-constexpr std::size_t kKept = 512;  // samples whose friction is kept at a time: column by column
+constexpr std::size_t kKept = 512;  // samples per block, for which friction is stored by columns
 static_assert(2 * kLongestHalf + 4 <= kKept);
-constexpr std::size_t kStride = kKept + 8;  // columns 4096 bytes apart share a few lines of a cache
-constexpr double kNothing = 1e-75;          // a decay whose fourth power is still a normal number
-constexpr std::int64_t kSmoothFrom = 7;     // samples of half a window: shorter ones smooth little
+constexpr std::size_t kStride =
+    kKept + 8;                      // padding: columns 4096 bytes apart share a few cache lines
+constexpr double kNothing = 1e-75;  // smallest decay with a fourth power that is a normal number
+constexpr std::int64_t kSmoothFrom = 7;  // samples in half a window: shorter windows smooth little
 
 struct Samples {
   const double* velocity;
-  const double* smooth;  ///< the velocity from which decays are computed
+  const double* smooth;  ///< the velocity for the decays
   const double* cosine;
   const double* sine;
   double limit;  ///< speed of the longest decay
-  double step;   ///< of a time that goes from -1/2 to 1/2
+  double step;   ///< time scaled to -1/2 to 1/2
 };
 
-/// All columns of samples from `first` on, `count` of them in whole fours.
+/// All columns of `count` samples from `first` on, in whole fours.
 JOINTID_CLONES void friction_at(const Samples& of, std::size_t first, std::size_t count,
                                 double* __restrict columns) {
   const double* __restrict velocity = of.velocity + first;
@@ -83,7 +85,7 @@ JOINTID_CLONES void friction_at(const Samples& of, std::size_t first, std::size_
       base::leave_out_small(decay, kNothing);
       put(4 + k, sign * decay);
       const Four square = decay * decay;
-      decay = square * square;  // of half the speed
+      decay = square * square;  // decay for half the speed
     }
     put(kFriction - 6, sign * cosine);
     put(kFriction - 5, sign * sine);
@@ -116,7 +118,7 @@ void friction_means(const EvenStretch& stretch, const SmoothWindows& windows,
     std::size_t end = w + 1;
     while (end < used.size() && used[end] - half + weight.size() - first <= kMost) ++end;
     const auto needed = static_cast<std::size_t>(used[end - 1] - half + weight.size() - first);
-    const std::size_t whole = (needed + kFour - 1) / kFour * kFour;  // the stretch ends later still
+    const std::size_t whole = (needed + kFour - 1) / kFour * kFour;  // the stretch ends later
     friction_at(samples, static_cast<std::size_t>(first), whole, columns.data());
     for (std::size_t c = 0; c < kFriction; ++c) {
       sum_windows(columns.data() + static_cast<Index>(c * kStride) - (first + half), weight.data(),
@@ -146,7 +148,8 @@ MatrixXd balance_columns(const EvenStretch& stretch, const SmoothWindows& window
     mean(stretch.velocity, windows.slope);
   }
   if (choice.jumping) {
-    // Of each sample less the one before: the weight's own differences do the same.
+    // Differences between each sample and the previous one; differences of the weights give the
+    // same.
     const VectorXd& weight = windows.weight;
     VectorXd change(weight.size() + 1);
     change.head(weight.size()) = -weight;

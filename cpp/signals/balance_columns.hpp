@@ -1,5 +1,6 @@
 #pragma once
-// What a signal may be a sum of, under smooth windows: wide enough that a model error is no delay.
+// Columns that can explain a signal under smooth windows. There are so many of them that a model
+// error does not appear as a delay.
 
 #include <optional>
 #include <vector>
@@ -8,23 +9,24 @@
 
 namespace jointid::signals {
 
-/// Which columns a balance has, in this order.
+/// Columns of a balance, in this order.
 struct ColumnChoice {
-  Signal cosine;  ///< of the angle
+  Signal cosine;  ///< cosine of the angle
   Signal sine;
-  /// Besides inertia, gravity and a constant: an inertia that varies with the angle.
+  /// Adds an inertia that varies with the angle to inertia, gravity and a constant.
   bool varying;
-  std::vector<Signal> own;  ///< of each the mean rate
-  /// Friction as any smooth function of the speed that may depend on direction, angle and time.
+  std::vector<Signal> own;  ///< mean rate of each
+  /// Adds friction as any smooth function of the speed, which may depend on direction, angle and
+  /// time.
   bool friction;
-  std::vector<Signal> own_friction;  ///< of each the mean rate
-  /// What jumps, by which the acceleration of a sample is that of the interval before it, and the
-  /// acceleration's answer to half of a jump.
+  std::vector<Signal> own_friction;  ///< mean rate of each
+  /// A signal that jumps. With it, the acceleration of a sample is that of the interval before.
+  /// `answer` is the response of the acceleration to half a jump.
   std::optional<Signal> jumping;
   double answer;
 };
 
-/// Means over the windows: windows x columns.
+/// Means over the windows, shape windows x columns.
 Eigen::MatrixXd balance_columns(const EvenStretch& stretch, const SmoothWindows& windows,
                                 const ColumnChoice& choice);
 

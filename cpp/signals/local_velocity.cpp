@@ -13,17 +13,19 @@ namespace jointid::signals {
 namespace {
 
 constexpr std::array<Eigen::Index, 13> kHalves{2, 3, 4, 5, 6, 8, 10, 13, 17, 22, 28, 38, 50};
-constexpr double kWidth = 1.8;      // standard deviations of an interval's half
+constexpr double kWidth = 1.8;      // half width of an interval, in standard deviations
 constexpr double kHarmless = 3e-4;  // of the largest speed
-constexpr double kOdd = 3.0;        // times the usual noise: a difference over a stamp that is off
-constexpr double kEven = 2e-3;      // of a period: intervals that differ by less are equal
-constexpr Eigen::Index kReach = 4;  // samples either side over which the speed is taken
+constexpr double kOdd = 3.0;        // times the usual noise: a difference over a wrong time stamp
+constexpr double kEven = 2e-3;      // of a period: intervals with a smaller difference are equal
+constexpr Eigen::Index kReach = 4;  // samples on either side for the speed
 constexpr Eigen::Index kChunk = 4096;
 
-/// Slopes at the middle of 2h + 1 even samples: sum of weight[j] (q[+j] - q[-j]), j = 1 .. h.
+/// Slope in the middle of 2h + 1 evenly spaced samples: sum of weight[j] (q[+j] - q[-j]), j = 1 ..
+/// h.
 struct Kernel {
   std::vector<double> weight;
-  double norm = 0.0;  ///< standard deviation of the slope, times the period, of unit noise
+  double norm =
+      0.0;  ///< standard deviation of the slope times the period, for noise of deviation 1
 };
 
 Kernel kernel_of(Eigen::Index half) {
@@ -46,13 +48,13 @@ Kernel kernel_of(Eigen::Index half) {
   return kernel;
 }
 
-/// Slope and its standard deviation per unit noise.
+/// Slope, and its standard deviation for noise of deviation 1.
 struct Slope {
   double value;
   double spread;
 };
 
-/// The cubic through samples around one of them, with samples added from the inside out.
+/// The cubic through the samples around one sample. Samples are added from the inside out.
 class Cubic {
  public:
   Cubic(const Signal& time, const Signal& position, Eigen::Index at, double unit)
@@ -120,18 +122,18 @@ class Cubic {
   std::array<double, 4> product_{};
 };
 
-/// The intersection of intervals, and the slope of the last length that met it.
+/// The intersection of intervals, and the slope of the last length that agreed with it.
 class Intersection {
  public:
-  /// An odd first value is kept only if nothing better comes.
+  /// A deviating first value is kept only if no better one follows.
   Intersection(double value, double spread, bool odd) : slope_{value, spread} {
     constexpr double kAny = std::numeric_limits<double>::infinity();
     low_ = odd ? -kAny : value - kWidth * spread;
     high_ = odd ? kAny : value + kWidth * spread;
   }
-  /// False when this length does not agree with the shorter ones.
+  /// False if this length does not agree with the shorter ones.
   bool take(double value, double spread) {
-    if (!(spread < slope_.spread)) return true;  // a cubic over five samples is no better
+    if (!(spread < slope_.spread)) return true;  // a cubic over five samples is not better
     const double low = std::fmax(low_, value - kWidth * spread);
     const double high = std::fmin(high_, value + kWidth * spread);
     if (!(low <= high)) return false;
@@ -148,7 +150,7 @@ class Intersection {
   double high_;
 };
 
-/// Standard deviation of the second-order difference per unit noise.
+/// Standard deviation of the second-order difference, for noise of deviation 1.
 double difference_spread(const Signal& time, const Stretch& stretch, Eigen::Index k) {
   if (stretch.end - stretch.begin < 3) return std::numeric_limits<double>::infinity();
   const Eigen::Index middle = std::clamp(k, stretch.begin + 1, stretch.end - 2);

@@ -13,16 +13,16 @@ namespace jointid::signals {
 namespace {
 
 constexpr double kNormal = 1.4826;  // standard deviation of a normal variable over its median size
-constexpr Eigen::Index kMost = 1 << 17;  // samples looked at for white noise
+constexpr Eigen::Index kMost = 1 << 17;  // samples examined for white noise
 constexpr Eigen::Index kPiece = 4096;
 constexpr std::size_t kFewest = 40;
-constexpr double kSmall = 5.5;       // steps: multiples are told up to here
+constexpr double kSmall = 5.5;       // steps: multiples are recognised up to here
 constexpr double kNear = 0.2;        // steps from a multiple: positions may be rounded
-constexpr std::int64_t kSeen = 10;   // small changes that make a grid
+constexpr std::int64_t kSeen = 10;   // number of small changes that make a grid
 constexpr double kOnGrid = 0.95;     // of the small changes
-constexpr double kRounding = 1e-6;   // of the median change: smaller ones are rounding errors
-constexpr double kBeyondStep = 0.6;  // steps: the step's own noise is 0.29
-constexpr int kLowest = 3;           // order of a difference
+constexpr double kRounding = 1e-6;   // of the median change: smaller changes are rounding errors
+constexpr double kBeyondStep = 0.6;  // steps: the noise of the step itself is 0.29
+constexpr int kLowest = 3;           // orders of the differences
 constexpr int kHighest = 6;
 
 double median(const std::vector<double>& values) {
@@ -62,8 +62,8 @@ double step_of(const Signal& position, const std::vector<Stretch>& stretches,
   return grid ? smallest : 0.0;
 }
 
-/// A difference of order m about sample k: weights that remove a polynomial below that order at the
-/// true stamps, of unit norm.
+/// A difference of order m about sample k, with weights of unit norm. It removes a polynomial below
+/// that order at the true time stamps.
 template <int M>
 double difference(const Signal& time, const Signal& position, Eigen::Index k, double period) {
   double square = 0.0;
@@ -105,7 +105,7 @@ double white_noise(const Signal& time, const Signal& position,
     if (cancel != nullptr) cancel->check();
     for (auto k = pieces[p].begin; k + kHighest < pieces[p].end; ++k) {
       const double now = speed(k);
-      if (now > slow || now == 0.0) continue;  // at rest nothing shows
+      if (now > slow || now == 0.0) continue;  // at rest there is nothing to measure
       sizes[0].push_back(difference<3>(time, position, k, period));
       sizes[1].push_back(difference<4>(time, position, k, period));
       sizes[2].push_back(difference<5>(time, position, k, period));

@@ -20,18 +20,19 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kOfMedian = 1.4826;  // standard deviations of normal noise in a median of sizes
-constexpr Index kLag = 9;             // samples, the longest
+constexpr Index kLag = 9;             // samples, the longest delay
 constexpr double kClipped = 4.0;      // standard deviations of a difference
-// Of the third differences of white noise, over its variance.
+// Autocovariance of the third differences of white noise, over its variance.
 constexpr std::array<double, 4> kAutocorrelation{1.0, -0.75, 0.3, -0.05};
-constexpr Index kNoiseReach = 3;    // of these, to either side
+constexpr Index kNoiseReach = 3;    // lags, to either side
 constexpr double kSure = 8.0;       // standard errors of the noise's share in the torque
-constexpr double kExplained = 0.9;  // of the cross-correlation, by one delay
-constexpr Index kBlocks = 60;       // of the recording, whose spread gives the standard errors
-constexpr Index kUsual = 6000;      // samples that are cut into so many blocks
-constexpr double kAnswer = 0.1;  // samples: how far the joint's own answer to noise moves the delay
-constexpr std::size_t kSums = 5;              // vectors of lags side by side
-constexpr std::size_t kLags = kSums * kFour;  // for which the torque has zeros behind its end
+constexpr double kExplained = 0.9;  // share of the cross-correlation that one delay must explain
+constexpr Index kBlocks = 60;   // parts of the recording; their spread gives the standard errors
+constexpr Index kUsual = 6000;  // samples that are cut into this number of blocks
+constexpr double kAnswer =
+    0.1;  // samples: the joint's own response to noise moves the delay by up to this
+constexpr std::size_t kSums = 5;              // vectors of lags in parallel
+constexpr std::size_t kLags = kSums * kFour;  // lags for which the torque has zeros after its end
 
 JOINTID_CLONES void take_thirds(const double* x, std::size_t count, double* thirds) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -48,7 +49,7 @@ JOINTID_CLONES void clip(double* values, std::size_t count, double divisor, doub
   }
 }
 
-/// Third differences, and `beyond` zeros.
+/// Third differences, followed by `beyond` zeros.
 VectorXd thirds_of(const Signal& signal, Index beyond = 0) {
   const Index count = std::max<Index>(0, signal.size() - 3);
   VectorXd result(count + beyond);
@@ -57,7 +58,7 @@ VectorXd thirds_of(const Signal& signal, Index beyond = 0) {
   return result;
 }
 
-/// Their standard deviation, as the median of every second one tells it.
+/// Standard deviation, from the median of every second difference.
 double size_of(const VectorXd& thirds, Index count) {
   if (count == 0) return 0.0;
   VectorXd sizes((count + 1) / 2);  // not set to zero before
@@ -67,7 +68,7 @@ double size_of(const VectorXd& thirds, Index count) {
   return kOfMedian * (size % 2 == 1 ? middle.value : 0.5 * (middle.value + middle.next));
 }
 
-/// Third differences over their usual size, clipped, and `beyond` zeros.
+/// Third differences over their usual size, clipped, followed by `beyond` zeros.
 VectorXd differences(const Signal& signal, double clipped, Index beyond = 0) {
   VectorXd result = thirds_of(signal, beyond);
   const Index count = result.size() - beyond;
@@ -77,7 +78,7 @@ VectorXd differences(const Signal& signal, double clipped, Index beyond = 0) {
   return result;
 }
 
-/// Sums of reading times torque, the torque so many samples in turn: later[l] = torque[i + l].
+/// Sums of reading times torque, with the torque l samples later: later[l] = torque[i + l].
 JOINTID_CLONES void lagged_sums(const double* reading, const double* torque, std::size_t count,
                                 double* sums) {
   std::array<Four, kSums> sum{};
@@ -91,20 +92,21 @@ JOINTID_CLONES void lagged_sums(const double* reading, const double* torque, std
   for (std::size_t j = 0; j < kSums; ++j) base::store(sums + kFour * j, sum[j]);
 }
 
-/// How alike noise is to itself so many samples later.
+/// Autocorrelation of the noise at this number of samples.
 double alike(Index lag) {
   const auto size = static_cast<std::size_t>(std::abs(lag));
   return size < kAutocorrelation.size() ? kAutocorrelation[size] : 0.0;
 }
 
-/// The cross-correlation of a torque that repeats the noise so many samples earlier, a column each.
+/// The cross-correlation of a torque that repeats the noise this number of samples earlier, one
+/// column each.
 MatrixXd taps() {
   return MatrixXd::NullaryExpr(
       2 * kLag + 1, 2 * (kLag - kNoiseReach) + 1,
       [](Index lag, Index place) { return alike(lag - place - kNoiseReach); });
 }
 
-/// Products of all pairs, block by block.
+/// Products of all pairs, by blocks.
 MatrixXd products_of(const std::vector<NoisyPair>& pairs) {
   MatrixXd all(0, 2 * kLag + 1);
   for (const auto& pair : pairs) {
@@ -138,7 +140,8 @@ MatrixXd noise_products(const Signal& reading, const Signal& torque, Index block
   std::array<double, kLags> sums;
   for (Index block = 0; block < blocks; ++block) {
     const Index begin = block * length;
-    // Column k has the torque `longest` - k samples behind the reading: columns from the last one.
+    // In column k the torque is `longest` - k samples behind the reading. Columns are filled from
+    // the last one.
     for (Index lag = 0; lag < lags; lag += together) {
       lagged_sums(first.data() + longest + begin, second.data() + begin + lag,
                   static_cast<std::size_t>(length), sums.data());
@@ -155,7 +158,7 @@ std::optional<RepeatedNoise> repeated_noise(const std::vector<NoisyPair>& pairs)
   const MatrixXd means = products_of(pairs);
   if (means.rows() < kBlocks / 2) return std::nullopt;
   const VectorXd seen = means.colwise().mean();
-  // Each two neighbouring delays share the noise between them; their normal equations are alike.
+  // Each two neighbouring delays share the noise between them. Their normal equations are equal.
   const MatrixXd kernel = taps();
   const VectorXd matched = kernel.transpose() * seen;
   const double own = kernel.col(0).squaredNorm();

@@ -1,6 +1,6 @@
 #pragma once
-// Noise of a reading that the torque repeats: products of third differences, in which smooth motion
-// does not appear.
+// Noise of a reading that the torque repeats, from products of third differences. Smooth motion
+// does not appear in them.
 
 #include <optional>
 #include <vector>
@@ -9,32 +9,32 @@
 
 namespace jointid::signals {
 
-/// Standard deviation of a signal's third differences, as the median of every second one tells it.
+/// Standard deviation of a signal's third differences, from the median of every second one.
 double roughness(const Signal& signal);
 
-/// Of each of `blocks` parts (rows): means of the reading's third differences times the torque's,
-/// by how many samples earlier the torque is, -longest to longest (columns). Differences count in
-/// standard deviations, at most `clipped` of them: a reversal's jump is not noise. No rows without
-/// noise.
+/// Means of the reading's third differences times the torque's, for each of `blocks` parts (rows).
+/// Columns: the number of samples by which the torque is earlier, from -longest to longest.
+/// Differences count in standard deviations, at most `clipped` of them, because the jump at a
+/// reversal is not noise. No rows if there is no noise.
 Eigen::MatrixXd noise_products(const Signal& reading, const Signal& torque, Eigen::Index blocks,
                                Eigen::Index longest, double clipped);
 
-/// A reading and the torque of the same samples.
+/// A reading and the torque at the same samples.
 struct NoisyPair {
   Signal reading;
   Signal torque;
 };
 
-/// Noise of the reading in the torque.
+/// Noise of the reading that the torque repeats.
 struct RepeatedNoise {
-  double earlier;  ///< by how many samples the torque has it earlier
+  double earlier;  ///< number of samples by which the torque has the noise earlier
   double error;    ///< standard error [samples]
-  double share;    ///< correlation of both noises
+  double share;    ///< correlation of the two noises
 };
 
-constexpr Eigen::Index kShortestNoise = 100;  ///< samples of a pair
+constexpr Eigen::Index kShortestNoise = 100;  ///< least number of samples of a pair
 
-/// Nothing where the torque does not repeat the readings' noise at one delay.
+/// Nothing if the torque does not repeat the readings' noise at one delay.
 std::optional<RepeatedNoise> repeated_noise(const std::vector<NoisyPair>& pairs);
 
 }  // namespace jointid::signals

@@ -21,10 +21,11 @@ using Eigen::VectorXd;
 constexpr double kLastStep = 1e-5;     // [s], the last step of the iteration
 constexpr double kLongestStep = 1e-3;  // [s]
 constexpr int kSteps = 6;
-constexpr int kRounds = 2;          // of weights
-constexpr double kOutlying = 4.0;   // medians of the residual's size: more counts for less
+constexpr int kRounds = 2;  // updates of the weights
+constexpr double kOutlying =
+    4.0;  // medians of the residual's size: larger residuals have less weight
 constexpr double kCluster = 0.3;    // [s] of motion that counts as one observation
-constexpr double kFarthest = 0.02;  // [s] of a delay that is searched from no shift
+constexpr double kFarthest = 0.02;  // [s], longest delay of a search that starts without a shift
 constexpr double kClearlyShorter = 0.5;
 constexpr double kClearErrors = 6.0;
 constexpr double kSingular = 1e-11;  // of the largest eigenvalue of the scaled normal equations
@@ -35,7 +36,7 @@ double period_of(const ShiftedStretch& stretch) {
   return (time[time.size() - 1] - time[0]) / static_cast<double>(time.size() - 1);
 }
 
-/// The window means of a signal at any shift: the smoothed signal between samples, by a cubic.
+/// The window means of a signal at any shift: the smoothed signal, interpolated by a cubic.
 class Levels {
  public:
   explicit Levels(const ShiftRows& rows) : rows_(rows) {
@@ -86,7 +87,7 @@ class Projection {
     decompose(gram_);
   }
 
-  /// Rows count for less, none for more: what they lack is taken from the normal equations.
+  /// Rows have weights of at most 1. The missing weight is subtracted from the normal equations.
   void weigh(const VectorXd& weights) {
     weights_ = &weights;
     std::vector<Index> less;
@@ -118,7 +119,7 @@ class Projection {
     const VectorXd inner = basis_.transpose() * matched;
     return basis_ * inner;
   }
-  /// Leaves of a signal what the columns cannot make.
+  /// Leaves the part of a signal that the columns cannot explain.
   void take_from(Eigen::Ref<VectorXd> signal) const {
     base::subtract_sum(columns_, coefficients(signal), signal);
   }
@@ -130,7 +131,8 @@ class Projection {
     const VectorXd inverse = scale.cwiseInverse();
     const MatrixXd scaled = inverse.asDiagonal() * gram * inverse.asDiagonal();
     if (const auto factor = base::cholesky(scaled)) {
-      // The trace of the inverse bounds its largest eigenvalue, the width the largest one itself.
+      // The trace of the inverse bounds its largest eigenvalue; the width bounds the largest
+      // eigenvalue of the equations.
       const auto width = static_cast<double>(gram.rows());
       basis_ = base::solve_upper(factor->transpose(), MatrixXd::Identity(gram.rows(), gram.rows()));
       if (basis_.squaredNorm() * kSingular * width < 1.0) {
@@ -158,7 +160,7 @@ JOINTID_CLONES void take_rates(const double* level, const double* between, std::
   for (std::size_t i = 1; i + 1 < count; ++i) rate[i] = (level[i + 1] - level[i - 1]) * between[i];
 }
 
-/// Rates of a fitted signal, from neighbouring windows; zero beside a window left out.
+/// Rates of a fitted signal, from neighbouring windows; zero next to an omitted window.
 class Rates {
  public:
   explicit Rates(const ShiftRows& rows) : between_(rows.columns.rows()) {
@@ -173,15 +175,15 @@ class Rates {
   void of(const VectorXd& level, Eigen::Ref<VectorXd> rate) const {
     const auto count = static_cast<std::size_t>(level.size());
     take_rates(level.data(), between_.data(), count, rate.data());
-    rate[0] = 0.0;  // the first and the last row have no two neighbours
+    rate[0] = 0.0;  // the first and the last row lack a neighbour
     rate[level.size() - 1] = 0.0;
   }
 
  private:
-  VectorXd between_;  ///< 1 over the time between both neighbours; 0 where one is left out
+  VectorXd between_;  ///< 1 over the time between the two neighbours; 0 where one is omitted
 };
 
-/// Behind the last row of each piece of the motion that counts as one observation.
+/// Ends (one past the last row) of each piece of the motion that counts as one observation.
 std::vector<Index> pieces_of(const ShiftRows& rows) {
   std::vector<Index> ends;
   Index row = 0;
@@ -201,7 +203,7 @@ std::vector<Index> pieces_of(const ShiftRows& rows) {
   return ends;
 }
 
-/// Inverse of one or two products; a singular pair's by its eigenvectors.
+/// Inverse for one or two unknowns; a singular pair by its eigenvectors.
 MatrixXd inverse_of(const MatrixXd& gram) {
   if (gram.size() == 1) return gram.cwiseInverse();
   const auto [values, vectors] = base::eigenpairs(gram);
@@ -211,7 +213,7 @@ MatrixXd inverse_of(const MatrixXd& gram) {
 }
 
 /// Standard errors: the larger of the classical ones and those clustered over pieces of the motion.
-/// `weighted` are the slopes times the weights.
+/// `weighted` has the slopes times the weights.
 VectorXd errors_of(const Eigen::Ref<const MatrixXd>& slopes,
                    const Eigen::Ref<const MatrixXd>& weighted, const VectorXd& missed,
                    const VectorXd& weights, const std::vector<Index>& pieces, Index rank) {

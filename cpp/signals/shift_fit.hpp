@@ -1,5 +1,5 @@
 #pragma once
-// The shift of one signal that a balance under smooth windows asks for.
+// The time shift of one signal that a balance under smooth windows requires.
 
 #include <array>
 #include <cstdint>
@@ -18,9 +18,8 @@ struct ShiftedStretch {
   const SmoothWindows& windows;
 };
 
-/// What a signal's window means are a sum of. The first columns, `conservative` of them, have
-/// nothing to do with friction; a signal `held` between samples stands for the middle of the
-/// interval.
+/// Model of a signal's window means. The first `conservative` columns have no friction. A sample of
+/// a `held` signal represents the middle of its interval.
 struct ShiftRows {
   std::vector<ShiftedStretch> stretches;
   Eigen::Ref<const Eigen::MatrixXd> columns;
@@ -29,30 +28,31 @@ struct ShiftRows {
 };
 
 struct ShiftSearch {
-  double reach;  ///< from the shift of least misfit up to this [s]; 0: from no shift
-  bool robust;   ///< whether windows that miss by far count for less
+  double reach;  ///< start at the shift with the smallest residual up to this one [s]; 0: start
+                 ///< without a shift
+  bool robust;   ///< whether windows with a large residual have less weight
   double least;  ///< a delay that is clearly shorter after one step is not refined [s]
 };
 
-/// A value and a standard error for the whole signal, its conservative part and friction [s], and
-/// the variance that the columns leave, over that of the signal.
+/// Value and standard error [s] for the whole signal, its conservative part and friction, and the
+/// variance that the columns do not explain, as a share of the signal's variance.
 struct FittedShift {
   std::array<double, 2> whole;
   std::array<double, 2> conservative;
   std::array<double, 2> friction;
   double unexplained;
-  /// As `leading_coefficient`, where that was a step on the way.
+  /// The result of `leading_coefficient`, if the fit computed it.
   std::optional<double> leading;
 };
 
-/// The signal's window means, shifted, are regressed on the columns and on their own rate of
-/// change, which is taken from the fitted columns: an instrument without the signal's noise, so
-/// that neither that noise nor the interpolation pulls the delay to a whole or a half sample.
-/// Nothing where the rows are too few or say nothing.
+/// Regresses the shifted window means of the signal on the columns and on their own rate of change.
+/// That rate comes from the fitted columns: an instrument without the signal's noise. So neither
+/// that noise nor the interpolation pulls the delay to a whole or a half sample. Nothing if the
+/// rows are too few or do not determine a shift.
 std::optional<FittedShift> fit_shift(const ShiftRows& rows, const ShiftSearch& search,
                                      const base::Cancel* cancel);
 
-/// Of the first column, in least squares of the signals, not shifted, on the columns.
+/// The first column's coefficient in least squares of the unshifted signals on the columns.
 double leading_coefficient(const ShiftRows& rows);
 
 }  // namespace jointid::signals

@@ -1,5 +1,5 @@
 #pragma once
-// A signal as the core sees it: a view of an array that its owner keeps.
+// A signal: a view of an array that its owner keeps.
 
 #include <Eigen/Core>
 

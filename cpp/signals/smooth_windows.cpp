@@ -20,10 +20,11 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 constexpr std::array<std::int64_t, 8> kHalfLengths{6, 8, 11, 15, 20, 28, 40, 56};  // samples
-constexpr double kNoiseShare = 1e-4;  // largest variance of the acceleration's noise over its own
+constexpr double kNoiseShare =
+    1e-4;  // largest variance of the acceleration's noise over its own variance
 constexpr double kOfMedianSize =
     1.4826;                       // standard deviations of normal noise in a median of sizes
-constexpr double kFinest = 1e-3;  // of the largest step: a smaller one is rounding, no counter
+constexpr double kFinest = 1e-3;  // of the largest step: a smaller step is rounding, not a counter
 
 /// Raised cosine: zero at both ends.
 VectorXd raised_cosine(std::int64_t half) {
@@ -47,7 +48,7 @@ VectorXd slope_weight(std::int64_t half, double period) {
   return weight / (moment * period);
 }
 
-/// Whether all steps surely stay on one side of rest.
+/// Whether all steps certainly stay on one side of rest.
 JOINTID_CLONES bool all_positive(const double* v, std::size_t steps) {
   base::Four least;
   base::fill(least, 1.0);
@@ -64,8 +65,8 @@ JOINTID_CLONES bool all_positive(const double* v, std::size_t steps) {
   return positive;
 }
 
-/// The first sample from `from` on that moves in another direction than the one before it; the
-/// number of samples without one. A sample at rest has a direction of its own.
+/// The first sample from `from` on with another direction of motion than the sample before; the
+/// number of samples if there is none. Rest counts as a direction of its own.
 Index next_turn(const Signal& velocity, Index from) {
   constexpr Index kBlock = 64;
   const double* v = velocity.data();
@@ -81,7 +82,7 @@ Index next_turn(const Signal& velocity, Index from) {
   return velocity.size();
 }
 
-/// The first sample from `from` on that is not usable; `count` without one.
+/// The first unusable sample from `from` on; `count` if there is none.
 Index next_unusable(const EvenStretch& stretch, Index from) {
   static_assert(sizeof(bool) == 1);
   const Index count = stretch.time.size();
@@ -90,7 +91,7 @@ Index next_unusable(const EvenStretch& stretch, Index from) {
   return found == nullptr ? count : static_cast<const bool*>(found) - stretch.usable;
 }
 
-/// Sizes of a signal's third differences, of every third sample: few of them are large.
+/// Sizes of every third of a signal's third differences; few of them are large.
 VectorXd third_differences(const Signal& signal) {
   VectorXd sizes((signal.size() - 1) / 3);
   for (Index i = 0; i < sizes.size(); ++i) {
@@ -101,7 +102,7 @@ VectorXd third_differences(const Signal& signal) {
   return sizes;
 }
 
-/// Whether more than half of the sizes are at most as large: then their median is.
+/// Whether more than half of the sizes are at most this limit. Then their median is, too.
 JOINTID_CLONES bool mostly_below(const double* sizes, std::size_t count, double limit) {
   double below = 0.0;
   std::array<double, 8> some{};
@@ -114,7 +115,7 @@ JOINTID_CLONES bool mostly_below(const double* sizes, std::size_t count, double 
   return 2.0 * below > static_cast<double>(count);
 }
 
-/// The smallest step of a signal that has steps, as a counter does; 0 of others.
+/// The smallest step of a signal that has steps, such as a counter; 0 for other signals.
 double counted_step(const Signal& signal) {
   double largest = 0.0;
   double smallest = std::numeric_limits<double>::infinity();

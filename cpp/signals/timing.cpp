@@ -15,10 +15,10 @@ namespace jointid::signals {
 
 namespace {
 
-constexpr Eigen::Index kSpeedReach = 4;  // samples either side over which the speed is taken
+constexpr Eigen::Index kSpeedReach = 4;  // samples on either side for the speed
 constexpr auto kWide = static_cast<std::size_t>(2 * kSpeedReach);
 constexpr Eigen::Index kStretch = 4096;           // samples
-constexpr Eigen::Index kMostIntervals = 1 << 18;  // samples looked at
+constexpr Eigen::Index kMostIntervals = 1 << 18;  // samples examined
 constexpr std::size_t kFewestIntervals = 40;
 constexpr double kFast = 0.3;  // of the peak speed
 constexpr double kSlow = 0.1;
@@ -42,18 +42,19 @@ std::vector<Stretch> stretches(Eigen::Index intervals) {
   return result;
 }
 
-// Intervals looked at together, and their neighbours: those of the third differences' ends.
+// Intervals per block, and their neighbours, which the ends of third differences need.
 constexpr std::size_t kBlock = 1024;
 
-/// Of the intervals about which an error of the time stamp shows, and of their neighbours.
+/// Intervals in which an error of the time stamp shows, and their neighbours.
 struct Intervals {
-  std::array<double, kBlock + 2> travelled;  ///< beside the speed times a wrong stamp
-  std::array<double, kBlock + 2> speed;      ///< its size
-  std::array<double, kBlock + 2> odd;        ///< 1 where the interval is no ordinary one
+  std::array<double, kBlock + 2> travelled;  ///< in addition to the speed times a wrong time stamp
+  std::array<double, kBlock + 2> speed;      ///< size of the third difference
+  std::array<double, kBlock + 2> odd;        ///< 1 where the interval is irregular
 };
 
-/// From `kSpeedReach` samples before the first interval on: `count` third differences, from the
-/// second interval on, and the speeds there; NaN where one of three intervals is odd.
+/// Fills `count` third differences, from the second interval on, and the speeds there; NaN where
+/// one of three intervals is irregular. Positions begin `kSpeedReach` samples before the first
+/// interval.
 JOINTID_CLONES void look_at(const double* time, const double* position, double period,
                             double stamped, std::size_t count, Intervals& result, double* rough,
                             double* usual) {
@@ -74,10 +75,10 @@ JOINTID_CLONES void look_at(const double* time, const double* position, double p
   }
 }
 
-/// Of the intervals at a high speed.
+/// Values of the intervals at a high speed.
 struct Fast {
   std::int64_t count;
-  std::int64_t rough;  ///< whose third difference is beyond a limit
+  std::int64_t rough;  ///< number with a third difference beyond a limit
 };
 
 JOINTID_CLONES Fast count_fast(const double* rough, const double* usual, std::size_t count,
@@ -117,20 +118,20 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
   double peak = 0.0;
   smallest = base::least_steps(position.data(), static_cast<std::size_t>(intervals)).positive;
   for (const auto& part : parts) {
-    // Third differences need one interval more on either side.
+    // Third differences need one more interval on either side.
     const Eigen::Index first = part.begin + 1;
     if (part.end - first <= 2 * kSpeedReach) continue;
     peak = std::max(peak, base::largest_rate(time.data() + first, position.data() + first, kWide,
                                              static_cast<std::size_t>(part.end - first) - kWide));
   }
   Intervals seen;
-  // Of these only as many are written as there are: not set to zero before.
+  // Only as many values are written as there are, so the array is not set to zero.
   Eigen::VectorXd rough;
   Eigen::VectorXd usual;
   Eigen::VectorXd chosen;
   std::size_t most = 0;
   for (const auto& part : parts) most += static_cast<std::size_t>(part.end - part.begin);
-  /// Values of the intervals that are wanted: each is written, few are kept, without a branch.
+  /// Values of the chosen intervals, without a branch: each is written, few are kept.
   const auto choose = [&](std::size_t count, auto wanted, auto value) {
     std::size_t found = 0;
     for (std::size_t i = 0; i < count; ++i) {
@@ -143,7 +144,7 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     for (auto* values : {&rough, &usual, &chosen}) values->resize(static_cast<Eigen::Index>(most));
     std::size_t count = 0;
     for (const auto& part : parts) {
-      // Third differences need one interval more on either side.
+      // Third differences need one more interval on either side.
       const Eigen::Index last = part.end - kSpeedReach;
       for (Eigen::Index k = part.begin + kSpeedReach + 1; k < last;) {
         if (cancel != nullptr) cancel->check();
@@ -160,7 +161,8 @@ TimingErrors timing_errors(const Signal& time, const Signal& position, double pe
     const auto is_fast = [&](std::size_t i) { return rate(i) > kFast * peak; };
     const auto still = choose(count, is_slow, change);
     const double limit = 3.0 * (still.size() > kFewestIntervals ? median(still) : 0.0);
-    // Where the changes are alike, nothing depends on the speed. Counting tells, mostly.
+    // If the changes are similar, the result does not depend on the speed. Usually counting shows
+    // it.
     const auto fast = count_fast(rough.data(), usual.data(), count, kFast * peak, limit);
     if (fast.count < static_cast<std::int64_t>(kFewestIntervals)) return 0.0;
     if (fast.count - fast.rough > fast.count / 2) return 0.0;

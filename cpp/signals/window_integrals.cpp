@@ -15,7 +15,7 @@ void sum_steps(const double* values, std::size_t width, const Bounds& windows, d
   }
 }
 
-/// The same of one value a sample, which needs no inner loop.
+/// The same with one value per sample, which needs no inner loop.
 template <class Step>
 void sum_single(const double* values, const Bounds& windows, double* result, Step step) {
   for (Eigen::Index w = 0; w < windows.rows(); ++w) {

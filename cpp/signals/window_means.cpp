@@ -14,7 +14,7 @@ namespace {
 using base::Four;
 using base::kFour;
 
-/// The sums of weighted samples from four neighbours on.
+/// The weighted sums that start at four neighbouring samples.
 [[gnu::always_inline]] inline void smooth_four(const double* signal, const double* weight,
                                                std::size_t width, Four& sum) {
   sum = Four{};
@@ -25,12 +25,12 @@ using base::kFour;
   }
 }
 
-/// Sums of `width` samples' weighted values from each sample on, sixteen outputs side by side.
+/// Sums of `width` samples' weighted values from each sample on, sixteen outputs in parallel.
 JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, std::size_t width,
                                   std::size_t count, double* result) {
   std::size_t i = 0;
   for (; i + 4 * kFour <= count; i += 4 * kFour) {
-    Four one{}, two{}, three{}, four{};  // an array of them would live in memory
+    Four one{}, two{}, three{}, four{};  // an array would live in memory
     for (std::size_t k = 0; k < width; ++k) {
       const double* x = signal + i + k;
       Four a, b, c, d;
@@ -60,7 +60,7 @@ JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, st
   }
 }
 
-/// One window's weighted samples, in four sums side by side.
+/// One window's weighted samples, in four parallel sums.
 [[gnu::always_inline]] inline void weigh(const double* samples, const double* weight,
                                          std::size_t fours, Four& sum) {
   sum = Four{};
@@ -91,7 +91,7 @@ JOINTID_CLONES void smooth_inside(const double* signal, const double* weight, st
   }
 }
 
-/// The shortest windows are the usual ones: their loops are unrolled.
+/// The shortest windows are the usual ones, so their loops are unrolled.
 JOINTID_CLONES void sum_some(const double* signal, const double* weight, std::size_t fours,
                              const std::int64_t* first, std::size_t count, double* sums) {
   if (fours == 3) {

@@ -1,6 +1,6 @@
 #pragma once
-// The decomposition-based law (4-8 to 4-15): the model's torque with feedback of the sensed one,
-// adaptation of the friction terms, and a robust term with a boundary layer.
+// The decomposition-based law (4-8 to 4-15): the torque of the model with feedback of the sensed
+// torque, adaptation of the friction terms, and a robust term with a boundary layer.
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,11 @@ struct AdaptiveRobust : Estimates {
   double bandwidth = 80.0;  ///< lambda [1/s]
   bool robust_term = true;
   double robust_torque = 5.05;  ///< rho
-  double boundary = 0.9 / 101;  ///< epsilon, on r [rad/s]
+  double boundary = 0.9 / 101;  ///< epsilon, boundary layer of r [rad/s]
   bool adaptation = false;
-  double adaptation_dry = 0.0;      ///< k of the terms in sgn v
-  double adaptation_viscous = 0.0;  ///< k of the terms in v and in the Stribeck coefficient
+  double adaptation_dry = 0.0;  ///< gain k of the terms with sgn v
+  double adaptation_viscous =
+      0.0;  ///< gain k of the terms with v and with the Stribeck coefficient
 
   struct State {
     std::array<double, 4> integral{};
@@ -58,7 +59,7 @@ struct AdaptiveRobust : Estimates {
     require.at_least_zero("adaptation_viscous", adaptation_viscous);
   }
 
-  /// Gains of the motor's side, at the output of a gear.
+  /// Converts gains of the motor side to the output of a gear.
   static AdaptiveRobust from_motor_side(double gear_ratio, double bandwidth, double robust_torque,
                                         double boundary, double adaptation_gain) {
     const double ratio = std::fabs(gear_ratio);

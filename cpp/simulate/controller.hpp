@@ -1,6 +1,6 @@
 #pragma once
-// Any of the controllers, and one of them at work: its state, its period, the limit on its torque.
-// The simulator and a session on a real joint step the same object.
+// Any of the controllers, and a running one: its state, its period, the limit on its torque. The
+// simulator and a session on a real joint step the same object.
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ namespace jointid::simulate {
 
 using Controller = std::variant<OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust, LugreObserver>;
 
-/// A law at work.
+/// A running law.
 template <class Law>
 struct Running {
   Law config;
@@ -25,7 +25,7 @@ using AnyRunning =
     std::variant<Running<OpenLoop>, Running<Pd>, Running<Pid>, Running<CompensatedPid>,
                  Running<AdaptiveRobust>, Running<LugreObserver>>;
 
-// Structs, not generic lambdas in the class: clang 14 never instantiates those.
+// Structs, because clang 14 never instantiates generic lambdas in a class.
 struct Begin {
   template <class Law>
   AnyRunning operator()(const Law& law) const {
@@ -52,7 +52,7 @@ class ControlRun {
     require.that(torque_limit > 0.0, "torque_limit", torque_limit, "above 0");
   }
 
-  /// The torque to hold until the next instant.
+  /// The torque to hold until the next step.
   double step(ControlInput input) {
     input.period = period_;
     const double asked = std::visit(Ask{input}, running_);
@@ -61,7 +61,7 @@ class ControlRun {
     return std::clamp(asked, -torque_limit_, torque_limit_);
   }
 
-  /// The same for input from outside, which is checked: a value that is not finite never reaches a
+  /// The same for external input, which is checked: a value that is not finite never reaches a
   /// joint.
   double checked_step(const ControlInput& input) {
     const base::Requirement require("step");
@@ -77,7 +77,7 @@ class ControlRun {
 
   [[nodiscard]] double period() const { return period_; }
   [[nodiscard]] double torque_limit() const { return torque_limit_; }
-  /// How often the limit cut the torque.
+  /// Number of steps in which the limit cut the torque.
   [[nodiscard]] long saturations() const { return saturations_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What a controller believes of its joint, and the torque it gives for it.
+// A controller's estimates of its joint, and the torque that follows from them.
 
 #include <array>
 #include <limits>
@@ -12,39 +12,39 @@
 
 namespace jointid::simulate {
 
-/// The velocity that friction is compensated for. The measured one says nothing while the joint
-/// sticks; the desired one already says where it is to go.
+/// The velocity at which friction is compensated. The measured velocity gives no direction while
+/// the joint sticks. The desired velocity does.
 enum class FrictionVelocity { measured, reference };
 
-/// The last share of the static excess that was computed: runs in neighbouring lanes often need the
-/// same.
+/// The last computed share of the static excess, because runs in neighbouring lanes often need the
+/// same one.
 struct Faded {
   double stribeck = -1.0;
   double velocity = 0.0;
   double share = 1.0;
 };
 
-/// What a controller sees at one instant.
+/// A controller's inputs at one instant.
 struct ControlInput {
   double time = 0.0;
   double position = 0.0;
   double velocity = 0.0;
-  double reading = 0.0;  ///< raw, of the torque sensor
+  double reading = 0.0;  ///< raw reading of the torque sensor
   Reference wanted{};
-  double period = 0.0;  ///< between instants
+  double period = 0.0;  ///< time between instants
   Faded* faded = nullptr;
 };
 
-/// Estimates of the joint, output side, SI.
+/// Estimates of the joint, output side, SI units.
 struct Estimates {
-  double inertia = 0.0;  ///< of the drive
+  double inertia = 0.0;  ///< inertia of the drive
   double coulomb = 0.0;
   double static_excess = 0.0;
   double stribeck = 0.0;
   double viscous = 0.0;
   double sensor_gain = 1.0;
   double sensor_offset = 0.0;
-  bool torque_feedback = true;  ///< carry the link's torque as the sensor measures it
+  bool torque_feedback = true;  ///< compensate the link's torque that the sensor measures
   FrictionVelocity friction_velocity = FrictionVelocity::measured;
 
   [[nodiscard]] double friction_speed(const ControlInput& input) const {

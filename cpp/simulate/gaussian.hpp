@@ -1,5 +1,5 @@
 #pragma once
-// Gaussian noise as a function of (seed, source, sample, draw): the same on any thread, in any
+// Gaussian noise as a function of (seed, source, sample, draw): the same on any thread and in any
 // lane.
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace jointid::simulate {
 
-/// Box and Muller: standard normal.
+/// Box and Muller: a standard normal number.
 inline double gaussian(std::uint64_t seed, std::uint32_t source, std::uint32_t sample,
                        std::uint32_t draw) {
   base::Random random(seed, source, sample, draw);

@@ -1,11 +1,11 @@
 #pragma once
-// One integration step of a joint under a held torque: the midpoint rule, with friction that is
-// set-valued at rest and solved for implicitly.
+// One integration step of a joint under a held torque: the midpoint rule. Friction is set-valued at
+// rest and solved for implicitly.
 //
-// Dry friction acts against the mean velocity of the step, never against anything else, and the
-// position moves with that velocity: friction can take energy only. Where the velocity would change
-// its sign, the step is divided at the reversal; from there the joint stays, exactly, or goes on
-// with what is left of the step. Both keep the second order.
+// Dry friction always acts against the mean velocity of the step, and the position moves with that
+// velocity. So friction can only remove energy. Where the velocity would change its sign, the step
+// is divided at the reversal. From there the joint either stays exactly at rest, or moves on for
+// the remaining time. Both cases keep the second order.
 
 #include "base/lanes.hpp"
 #include "model/dry_friction.hpp"
@@ -18,18 +18,19 @@ template <class Number>
 struct MotionOf {
   Number position = 0.0;
   Number velocity = 0.0;
-  Number varying =
-      0.0;  ///< friction that varies with the speed, in the last step: a first guess for the next
+  Number varying = 0.0;  ///< friction that varies with the speed, from the last step: the first
+                         ///< guess for the next step
   Number bristle = 0.0;  ///< mean deflection [rad] (Dahl, LuGre)
 };
 
-/// What acts on the joint at one instant.
+/// Torques on the joint at one instant.
 template <class Number>
 struct Dynamics {
   Number acceleration = 0.0;
-  Number friction = 0.0;      ///< torque that friction takes from the drive
-  Number link_torque = 0.0;   ///< that the sensor is in: gravity and the link's inertia
-  Number drive_torque = 0.0;  ///< over the angle, in the drive: harmonics and offset
+  Number friction = 0.0;     ///< torque by which friction brakes the drive
+  Number link_torque = 0.0;  ///< torque at the sensor: gravity and the link's inertia
+  Number drive_torque =
+      0.0;  ///< torque in the drive that depends on the angle: harmonics and offset
 };
 
 /// Torque of gravity and load on the link.
@@ -56,10 +57,10 @@ Number drive_torque(const JointOf<Number>& joint, const Number& position) {
 namespace detail {
 
 /// Friction behind bristles (2-4 to 2-7). z' = v - rate z is solved exactly over the step for the
-/// step's velocity; friction is then linear in that velocity and implicit in it. Velocity and
-/// deflection count by their means over the step where the step resolves the bristles' oscillation,
-/// by their values at its end where it does not: second order for the first, no ringing for the
-/// second. The speed in the rate is found by iteration.
+/// step's velocity. Friction is then linear in that velocity and implicit in it. If the step
+/// resolves the bristles' oscillation, the means of velocity and deflection over the step count,
+/// which gives second order. Otherwise their values at the end of the step count, which avoids
+/// ringing. The speed in the rate is found by iteration.
 template <class Number>
 void advance_bristles(const JointOf<Number>& joint, MotionOf<Number>& motion, const Number& push,
                       const Number& dry_load, double step) {
@@ -69,7 +70,7 @@ void advance_bristles(const JointOf<Number>& joint, MotionOf<Number>& motion, co
   const Number before = motion.velocity;
   const Number coarse = 0.25 * h * h * joint.bristle_stiffness / mass;
   const Number end = 1.0 - 1.0 / (1.0 + coarse * coarse);
-  Number used = before;  // the velocity that counts
+  Number used = before;  // velocity that enters the friction
   Number after = before;
   Number rate = 0.0;
   Number mean = 1.0;
@@ -79,13 +80,14 @@ void advance_bristles(const JointOf<Number>& joint, MotionOf<Number>& motion, co
     const auto friction = model::directed(joint, forward, dry_load);
     rate = joint.bristle_stiffness * speed / friction.level(model::varying(joint, forward, speed));
     const Number x = rate * h;
-    // (1 - e^-x) / x and (1 - that) / x, by series where the differences would cancel.
+    // (1 - e^-x) / x and (1 - that) / x, by series where the differences would cancel
     const auto small = x < Number(0.05);
     const Number safe = base::select(small, Number(1.0), x);
     const Number series = 0.5 - x * (1.0 / 6 - x * (1.0 / 24 - x * (1.0 / 120 - x * (1.0 / 720))));
     mean = base::select(small, 1.0 - x * series, (1.0 - base::exp(-safe)) / safe);
     const Number second = base::select(small, series, (1.0 - mean) / safe);
-    const Number share = mean + end * (1.0 - x * mean - mean);  // of z, and of z', in the friction
+    const Number share =
+        mean + end * (1.0 - x * mean - mean);  // weights of z and z' in the friction
     const Number held = share * z * (joint.bristle_stiffness - joint.bristle_damping * rate);
     const Number slope = joint.bristle_stiffness * h * (second + end * (mean - second)) +
                          joint.bristle_damping * share + friction.viscous;
@@ -101,7 +103,8 @@ void advance_bristles(const JointOf<Number>& joint, MotionOf<Number>& motion, co
 
 }  // namespace detail
 
-/// `push`: what accelerates but friction, held over the step; `dry_load`: dry friction of the load.
+/// `push`: accelerating torque without friction, held over the step; `dry_load`: dry friction of
+/// the load.
 template <class Number>
 void advance_pushed(const JointOf<Number>& joint, MotionOf<Number>& motion, const Number& push,
                     const Number& dry_load, double step) {
@@ -135,7 +138,8 @@ void advance_pushed(const JointOf<Number>& joint, MotionOf<Number>& motion, cons
       base::select(stuck, motion.position, motion.position + half * (velocity + velocity_after));
   motion.varying = varying;
   if (base::any(reversing)) {
-    // Until the stop friction is that of the mean velocity, half the one at the start.
+    // Until the stop, friction is that of the mean velocity, which is half the velocity at the
+    // start.
     const Number braking = friction.level(varying) + 0.5 * friction.viscous * speed - ahead;
     const Number before = speed * mass / base::select(reversing, braking, Number(1.0));
     const Number rest = h - before;
@@ -158,7 +162,7 @@ void advance_pushed(const JointOf<Number>& joint, MotionOf<Number>& motion, cons
   motion.position = position_after;
 }
 
-/// `torque`: of the drive, held over the step.
+/// `torque`: torque of the drive, held over the step.
 template <class Number>
 void advance(const JointOf<Number>& joint, MotionOf<Number>& motion, const Number& torque,
              double step) {
@@ -167,7 +171,7 @@ void advance(const JointOf<Number>& joint, MotionOf<Number>& motion, const Numbe
   advance_pushed(joint, motion, push, joint.load_friction * base::absolute(torque), step);
 }
 
-/// What acts now, under the torque that the drive gives.
+/// Torques at this instant for this torque of the drive.
 template <class Number>
 Dynamics<Number> dynamics(const JointOf<Number>& joint, const MotionOf<Number>& motion,
                           const Number& torque) {

@@ -1,5 +1,5 @@
 #pragma once
-// Friction compensated by an observer of the bristles (Canudas de Wit, Olsson, Åström, Lischinsky:
+// Friction compensation by an observer of the bristles (Canudas de Wit, Olsson, Åström, Lischinsky:
 // "A new model for control of systems with friction", 1995), around a PD law with torque feedback.
 
 #include <cmath>
@@ -9,10 +9,10 @@
 namespace jointid::simulate {
 
 struct LugreObserver : Estimates {
-  double bandwidth = 80.0;         ///< of the tracking error [1/s]
+  double bandwidth = 80.0;         ///< bandwidth of the tracking error [1/s]
   double bristle_stiffness = 1e4;  ///< sigma_0
   double bristle_damping = 0.0;    ///< sigma_1
-  double observer_gain = 0.0;      ///< how the filtered error moves the bristles [1]
+  double observer_gain = 0.0;      ///< gain of the filtered error on the bristles [1]
 
   struct State {
     double bristle = 0.0;  ///< observed deflection [rad]
@@ -28,7 +28,7 @@ struct LugreObserver : Estimates {
     const double model = inertia * pulled + viscous * velocity + link_torque(input);
     const double level = coulomb + static_excess * fading(velocity);
     if (level <= 0.0) return model;  // no dry friction, no bristles
-    // Exact over a period for the velocity at hand; the rate is that of the mean deflection.
+    // Exact over a period at this velocity; the rate is that of the mean deflection.
     const double rate = bristle_stiffness * std::fabs(velocity) / level;
     const double inflow = velocity - observer_gain * r;
     const double x = rate * input.period;

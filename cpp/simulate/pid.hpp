@@ -39,10 +39,10 @@ struct Pid {
   double stiffness = 0.0;
   double integral = 0.0;  ///< torque per error of position and second
   double damping = 0.0;
-  double integral_limit = 1e6;  ///< on the torque of the integral
+  double integral_limit = 1e6;  ///< limit on the torque of the integral
 
   struct State {
-    double torque = 0.0;  ///< of the integral
+    double torque = 0.0;  ///< torque of the integral
   };
   [[nodiscard]] double law(State& state, const ControlInput& input) const {
     const double error = input.wanted.position - input.position;

@@ -74,10 +74,10 @@ double SensorChain::velocity(double time, double position, double counts, double
   if (sample_ > 0) {
     const double elapsed = time - last_time_;
     if (sensors_.velocity == VelocityEstimate::counts) {
-      // Without an encoder every change counts.
+      // Without an encoder every change is a count.
       const double came = resolution_ > 0.0 ? std::fabs(counts - last_counts_)
                                             : static_cast<double>(sensors_.velocity_counts);
-      // Half a nanosecond: sums of periods miss the limit by rounding.
+      // Half a nanosecond, because sums of periods miss the limit by rounding.
       if (came < sensors_.velocity_counts && elapsed < sensors_.velocity_time - 5e-10) {
         return last_velocity_;
       }

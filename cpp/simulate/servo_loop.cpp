@@ -12,9 +12,9 @@ namespace jointid::simulate {
 
 namespace {
 
-constexpr double kFarthest = 1e6;  // [rad]; beyond, a motion has no meaning
+constexpr double kFarthest = 1e6;  // [rad]; larger motions have no meaning
 
-/// The duty that acts now: the latest of those older than the delay.
+/// The duty that acts now: the latest one older than the delay.
 class DelayedDuty {
  public:
   explicit DelayedDuty(double delay) : delay_(delay) {}
@@ -36,7 +36,7 @@ class DelayedDuty {
   std::deque<std::pair<double, double>> coming_;
 };
 
-/// Gear, motor and joint over one step of a held duty.
+/// Gear, motor and joint over one step with a held duty.
 class Servo {
  public:
   explicit Servo(const ServoLoop& loop) : loop_(loop), driven_(loop.joint), free_(loop.joint) {
@@ -55,13 +55,13 @@ class Servo {
     const double there = motion.position + 0.5 * step * motion.velocity;
     const double load = gravity(joint, there);
     const double push = torque - load - drive_torque(joint, there);
-    // Motor and load pull at the gear from its two sides: in a hold both press the teeth.
+    // Motor and load act on the gear from its two sides. During a hold both press the teeth.
     const auto dry_load = [&](double velocity) {
       return loop_.load_friction * std::fabs(load + torque - back_emf * velocity);
     };
     MotionOf<double> first = motion;
     advance_pushed(joint, first, push, dry_load(motion.velocity), step);
-    // The back-EMF is that of the mean velocity, known after a first try.
+    // The back-EMF follows the mean velocity, which is known after a first attempt.
     const double mean = 0.5 * (motion.velocity + first.velocity);
     advance_pushed(joint, motion, push, dry_load(mean), step);
   }
@@ -108,7 +108,8 @@ ServoMotion roll_out(const ServoLoop& loop, const ServoLog& log, double step,
     const double part = span / parts;
     for (double k = 0.0; k < parts; k += 1.0) {
       double duty = log.command[i];
-      // In the middle of the step, as all that acts in it: the loop is no half step late.
+      // In the middle of the step, like all inputs of the step. Otherwise the loop would be late by
+      // half a step.
       const double there = servo.motion.position + 0.5 * part * servo.motion.velocity;
       if (loop.closed) duty = loop.gain * (duty - there);
       duty = std::clamp(duty, -loop.saturation, loop.saturation);

@@ -1,6 +1,7 @@
 #pragma once
-// A servo without a torque signal: a motor on a voltage, that the servo's own position loop or a
-// log chooses, around a simulated joint. Along a log's time stamps, one run or many.
+// A servo without a torque signal: a motor, driven by a voltage, around a simulated joint. The
+// servo's position loop or a log chooses the voltage. Simulated along a log's time stamps, for one
+// run or many.
 
 #include <span>
 #include <vector>
@@ -10,27 +11,28 @@
 
 namespace jointid::simulate {
 
-/// Motor and position loop of a servo; output side of the gear, SI.
+/// Motor and position loop of a servo; output side of the gear, SI units.
 struct ServoLoop {
-  model::Joint joint{};             ///< without friction of the load, which is below
+  model::Joint joint{};             ///< without friction of the load, see load_friction
   double torque_per_voltage = 1.0;  ///< k_t / R [N·m/V]
   double back_emf = 0.0;            ///< k_t² / R [N·m·s/rad], while the motor is driven
-  /// Dry friction per torque through the gear: what the motor gives less what the load takes [1].
+  /// Dry friction per torque through the gear, which is the motor's torque minus the load's [1].
   double load_friction = 0.0;
-  bool closed = true;       ///< whether the command is a wanted position, or the duty itself
+  bool closed =
+      true;  ///< whether the command is the desired position; otherwise it is the duty itself
   double gain = 1.0;        ///< duty per error of position [1/rad]
-  double saturation = 1.0;  ///< of the duty's magnitude
-  double delay = 0.0;       ///< from the error to the duty [s]
+  double saturation = 1.0;  ///< limit of the duty's magnitude
+  double delay = 0.0;       ///< delay from the error to the duty [s]
   double position = 0.0;    ///< at the start
   double velocity = 0.0;
 
   void validate() const;
 };
 
-/// What was logged in a run, one value a sample; values are held until the next.
+/// The log of a run, one value per sample. Each value is held until the next.
 struct ServoLog {
   std::span<const double> time;     ///< [s], increasing
-  std::span<const double> command;  ///< wanted position [rad], or duty where the loop is not closed
+  std::span<const double> command;  ///< desired position [rad], or duty if the loop is not closed
   std::span<const double> supply;   ///< [V]
   std::span<const double> driven;   ///< 0 where the motor turns freely
 };
@@ -40,11 +42,11 @@ struct ServoMotion {
   std::vector<double> position, velocity;
 };
 
-/// Steps of at most `step` seconds. Throws base::InputError when the motion leaves all bounds.
+/// Uses steps of at most `step` seconds. Throws base::InputError when the motion leaves all bounds.
 ServoMotion roll_out(const ServoLoop& loop, const ServoLog& log, double step,
                      const base::Cancel& cancel);
 
-/// One motion a loop, in order, on the pool's threads.
+/// One motion per loop, in order, on the pool's threads.
 std::vector<ServoMotion> roll_out(std::span<const ServoLoop> loops, std::span<const ServoLog> logs,
                                   double step, base::Pool& pool);
 

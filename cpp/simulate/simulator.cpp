@@ -14,8 +14,8 @@ namespace jointid::simulate {
 namespace {
 
 using Wide = base::Lanes<kSideBySide / 2>;
-using Narrow = base::Lanes<kSideBySide / 4>;  ///< no lane is idle where half as many run
-constexpr double kOutOfBounds = 1e12;         // radians: no motion, a loop that diverges
+using Narrow = base::Lanes<kSideBySide / 4>;  ///< with half as many runs, no lane is idle
+constexpr double kOutOfBounds = 1e12;         // radians: beyond, the loop diverges
 constexpr std::size_t kBlock = 64;            // control periods between checks of the cancel flag
 
 std::int64_t rounded(double value) {
@@ -44,7 +44,7 @@ JointOf<Number> joined(std::span<const Setup> setups) {
   return joint;
 }
 
-/// One run's part of the loop: what is sampled, commanded and kept at a control instant.
+/// One run's part of the loop: its samples, commands and signals at a control instant.
 class Loop {
  public:
   Loop(const Scenario& scenario, const Setup& setup, Outcome& outcome, Kept kept)
@@ -58,7 +58,7 @@ class Loop {
       const std::size_t samples = (scenario.instants() + every - 1) / every;
       outcome.signals.each([&](std::vector<double>& signal) {
         signal.clear();
-        signal.reserve(samples);  // not filled: a run of days may be ended early
+        signal.reserve(samples);  // not filled, because a run of days may end early
       });
     }
   }
@@ -97,7 +97,7 @@ class Loop {
         s.friction.push_back(acting.friction);
       }
     }
-    // Over a sample the drive gave the mean of what was commanded until the next.
+    // The recorded torque of a sample is the mean of the commands until the next sample.
     held_ += torque;
     ++commands_;
     if (commands_ > 1) s.torque.back() = held_ / commands_;
@@ -114,12 +114,12 @@ class Loop {
   Kept kept_;
   double sum_ = 0.0;
   std::int64_t count_ = 0;
-  double held_ = 0.0;  ///< commands since the last sample, summed
+  double held_ = 0.0;  ///< sum of the commands since the last sample
   int commands_ = 0;
 };
 
-/// As many runs as Number has lanes, or fewer: the last is then repeated and thrown away.
-/// `reference(k)` is what is wanted at control instant k.
+/// Simulates as many runs as Number has lanes, or fewer. Then the last run is repeated, and the
+/// copies are dropped. `reference(k)` is the desired motion at control instant k.
 template <class Number, class Wanted>
 void run(const Scenario& scenario, const Wanted& reference, std::span<const Setup> setups,
          std::span<Outcome> outcomes, Kept kept, const base::Cancel& cancel) {
@@ -172,7 +172,7 @@ void run_group(const Scenario& scenario, const Wanted& reference, std::span<cons
   }
 }
 
-/// Neighbours of one structure, at most as many as there are lanes.
+/// Neighbours with one structure, at most one per lane.
 std::vector<std::span<const Setup>> groups(std::span<const Setup> setups) {
   std::vector<std::span<const Setup>> result;
   for (std::size_t begin = 0; begin < setups.size();) {

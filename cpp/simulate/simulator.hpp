@@ -1,7 +1,7 @@
 #pragma once
-// Closed loops: joint, sensors and controller along one trajectory, one run or many. Runs whose
-// joints have one structure advance side by side in lanes, groups of them on the pool's threads;
-// the bits of a run depend on neither.
+// Closed loops: joint, sensors and controller along one trajectory, for one run or many. Runs of
+// joints with one structure advance in parallel lanes, and groups of them run on the pool's
+// threads. The bits of a run depend on neither.
 
 #include <cstdint>
 #include <span>
@@ -15,13 +15,13 @@
 
 namespace jointid::simulate {
 
-/// What all runs of a batch share.
+/// Settings that all runs of a batch share.
 struct Scenario {
   double duration = 1.0;
-  double control_period = 1e-3;    ///< the command is held so long
-  double integration_step = 5e-4;  ///< a whole number of them is a control period
-  int sample_every = 1;            ///< control periods a recorded sample
-  double settling = 0.0;           ///< left out of the tracking error [s]
+  double control_period = 1e-3;    ///< time for which a command is held
+  double integration_step = 5e-4;  ///< the control period is a multiple of it
+  int sample_every = 1;            ///< control periods per recorded sample
+  double settling = 0.0;           ///< time at the start that the tracking error leaves out [s]
   Sensors sensors{};
 
   void validate() const;
@@ -43,12 +43,12 @@ struct Setup {
   void validate() const;
 };
 
-/// Recorded signals, one value a sample; what the sensors saw, and what was.
+/// Recorded signals, one value per sample: the sensors' values and the true values.
 struct Signals {
   std::vector<double> position, velocity, torque, reading, reference;
   std::vector<double> true_position, true_velocity, true_acceleration, friction, link_torque;
 
-  /// Calls visit(signal) for each.
+  /// Calls visit(signal) for each signal.
   template <class Visit>
   void each(Visit visit) {
     for (auto* signal : {&position, &velocity, &torque, &reading, &reference, &true_position,
@@ -65,23 +65,23 @@ struct Outcome {
   std::int64_t saturations = 0;
 };
 
-/// What a run keeps of its signals.
+/// Selection of the signals that a run stores.
 enum class Kept {
   nothing,
   all,
   truth,  ///< true_position, true_velocity, true_acceleration, torque, reading and link_torque
 };
 
-/// Most runs that advance side by side.
+/// Largest number of runs that advance in parallel.
 inline constexpr std::size_t kSideBySide = 8;
 
 /// The same runs on the calling thread, along references that are known at each control instant.
-/// Scenario and setups are taken as valid.
+/// Scenario and setups must be valid.
 void simulate_on_this_thread(const Scenario& scenario, std::span<const Reference> wanted,
                              std::span<const Setup> setups, std::span<Outcome> outcomes, Kept kept,
                              const base::Cancel& cancel);
 
-/// One Outcome a setup, in order. Throws base::InputError when a motion leaves all bounds.
+/// One Outcome per setup, in order. Throws base::InputError when a motion leaves all bounds.
 std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajectory,
                               const std::vector<Setup>& setups, bool signals, base::Pool& pool);
 

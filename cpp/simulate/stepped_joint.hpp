@@ -1,5 +1,5 @@
 #pragma once
-// A joint that is moved step by step from outside: behind an emulated drive, for one.
+// A joint that an external caller moves step by step, for example an emulated drive.
 
 #include <cmath>
 #include <cstdint>
@@ -10,15 +10,15 @@
 
 namespace jointid::simulate {
 
-/// What a stepped joint starts from.
+/// Initial state and settings of a stepped joint.
 struct SteppedSetup {
   model::Joint joint;
   Sensors sensors;
   double gear_ratio = 1.0;
   double sensor_gain = 1.0;
   double sensor_offset = 0.0;
-  double period = 1e-3;  ///< between observations, for the sensors' filter
-  double step = 2.5e-4;  ///< of the integration, at most
+  double period = 1e-3;  ///< time between observations, for the sensors' filter
+  double step = 2.5e-4;  ///< largest step of the integration
   double position = 0.0;
   double velocity = 0.0;
   std::uint64_t seed = 0;
@@ -28,9 +28,9 @@ class SteppedJoint {
  public:
   explicit SteppedJoint(const SteppedSetup& setup);
 
-  /// The drive's torque, held for a time; cut at the joint's limit.
+  /// Holds a torque of the drive for a time, cut at the joint's limit.
   void advance(double torque, double duration);
-  /// What the sensors show now; advances their noise and filter.
+  /// Returns the values of the sensors; advances their noise and filter.
   Observation observe();
 
   [[nodiscard]] double time() const { return time_; }

@@ -33,7 +33,7 @@ Eigen::VectorXd curvatures(const Eigen::VectorXd& time, const Eigen::VectorXd& p
   return curvature;
 }
 
-/// How much of the sines is left, with two derivatives: 0 before the start and after the end.
+/// Factor of the fade with two derivatives: 0 before the start and after the end.
 Reference envelope(double duration, double fade, double time) {
   const double left = duration - time;
   const bool ending = left < time;
@@ -155,7 +155,7 @@ void Trajectory::sample(double period, std::span<Reference> wanted) const {
 }
 
 void Trajectory::sample(const Multisine& form, double period, std::span<Reference> wanted) {
-  constexpr std::size_t kAnew = 64;  // samples after which rounding starts again
+  constexpr std::size_t kAnew = 64;  // samples after which the rotation restarts, to limit rounding
   std::fill(wanted.begin(), wanted.end(), Reference{});
   for (Eigen::Index i = 0; i < form.amplitude.size(); ++i) {
     const double rate = form.frequency[i];

@@ -17,28 +17,27 @@ struct Reference {
 
 class Trajectory {
  public:
-  /// offset + sum of amplitude · sin(frequency · t + phase); frequencies in rad/s. With a fade the
-  /// sum grows from nothing over so many seconds, and ends so: it starts and ends at rest at
-  /// offset.
+  /// offset + sum of amplitude · sin(frequency · t + phase); frequencies in rad/s. The sum fades in
+  /// and out over `fade` seconds, so that the motion starts and ends at rest at `offset`.
   static Trajectory multisine(Eigen::VectorXd amplitude, Eigen::VectorXd frequency,
                               Eigen::VectorXd phase, double offset, double duration,
                               double fade = 0.0);
-  /// From 0 to `distance` in `rise`, half a cosine; then rest.
+  /// From 0 to `distance` in `rise` as half a cosine; then at rest.
   static Trajectory sigmoid(double distance, double rise, double duration);
   /// `distance` from `time` on.
   static Trajectory step(double distance, double time, double duration);
-  /// From 0 to `distance` at no more than `velocity` and exactly `acceleration`; then rest.
+  /// From 0 to `distance` with at most `velocity` and exactly `acceleration`; then at rest.
   static Trajectory trapezoid(double distance, double velocity, double acceleration,
                               double duration);
   /// The natural cubic spline through samples: velocity and acceleration are continuous.
   static Trajectory samples(const Eigen::VectorXd& time, const Eigen::VectorXd& position);
 
-  /// What is wanted at a time [s]; held before 0 and after the last sample.
+  /// The desired motion at a time [s]; held before 0 and after the last sample.
   [[nodiscard]] Reference at(double time) const;
-  /// The same at every period from 0 on, to a few units in the last place: sums of sines take one
-  /// rotation a sine and sample instead of two functions.
+  /// The same at every period from 0 on, to a few units in the last place. Sums of sines take one
+  /// rotation per sine and sample instead of two functions.
   void sample(double period, std::span<Reference> wanted) const;
-  /// How long it is meant to last [s].
+  /// Intended duration [s].
   [[nodiscard]] double duration() const { return duration_; }
 
  private:

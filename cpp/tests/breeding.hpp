@@ -1,11 +1,11 @@
 #pragma once
-// One step of breeding, for checks of what it does to genes.
+// One step of breeding, for checks of its effect on genes.
 
 #include "search/breeder.hpp"
 
 namespace jointid::tests {
 
-/// One generation on, with the options' probabilities.
+/// Breeds one generation, with the options' probabilities.
 inline Eigen::MatrixXd children_of(const search::GaOptions& options, const Eigen::MatrixXd& parents,
                                    const Eigen::VectorXd& penalties, int generation = 1) {
   search::Breeder breeder(options, 5, 0);
@@ -15,7 +15,7 @@ inline Eigen::MatrixXd children_of(const search::GaOptions& options, const Eigen
   return children;
 }
 
-/// A first population.
+/// Makes a first population.
 inline Eigen::MatrixXd random_genes(Eigen::Index rows, Eigen::Index columns,
                                     const search::GaOptions& options) {
   Eigen::MatrixXd genes(rows, columns);

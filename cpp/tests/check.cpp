@@ -8,7 +8,7 @@ namespace jointid::tests {
 
 namespace {
 
-int failures_here = 0;  // conditions that failed in the check that runs
+int failures_here = 0;  // conditions that failed in the running check
 
 }  // namespace
 
@@ -20,7 +20,7 @@ std::vector<Named>& registered() {
 void expect(bool holds, const char* text, const std::string& values, const char* file, int line) {
   if (holds) return;
   ++failures_here;
-  constexpr int kEnough = 20;  // a condition in a loop need not fill the screen
+  constexpr int kEnough = 20;  // a failing condition in a loop must not fill the screen
   if (failures_here > kEnough) return;
   std::printf("%s:%d: %s%s%s\n", file, line, text, values.empty() ? "" : "\n    ", values.c_str());
 }

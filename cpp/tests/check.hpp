@@ -1,7 +1,7 @@
 #pragma once
-// A small harness for the core's checks: named checks register themselves, a failed condition
-// prints where it stands and its values, and the check goes on. Conditions are read on the main
-// thread only.
+// A small harness for the core's checks. Named checks register themselves. A failed condition
+// prints its location and its values, and the check continues. Conditions are evaluated only on the
+// main thread.
 
 #include <cmath>
 #include <exception>
@@ -26,7 +26,7 @@ struct Registration {
   Registration(std::string_view name, Body body) { registered().push_back({name, body}); }
 };
 
-/// Prints file, line and what differs when `holds` is false.
+/// Prints file, line and the difference if `holds` is false.
 void expect(bool holds, const char* text, const std::string& values, const char* file, int line);
 
 template <class First, class Second>
@@ -41,7 +41,7 @@ void expect_close(const First& a, const Second& b, double tolerance, const char*
   expect(first == second || difference <= tolerance, text, values.str(), file, line);
 }
 
-/// The message of what the call throws, as Exception; empty (and a failure) when it does not.
+/// The message that the call throws as Exception; empty (and a failure) if it does not throw.
 template <class Exception, class Call>
 std::string message_of(Call call, const char* text, const char* file, int line) {
   std::string message;
@@ -73,7 +73,7 @@ inline bool contains(const std::string& text, std::string_view part) {
   static void JOINTID_JOIN(check_, number)()
 
 #define CHECK(condition) ::jointid::tests::expect((condition), #condition, "", __FILE__, __LINE__)
-/// With something to print when it fails: CHECK_WITH(a < b, "seed " + std::to_string(seed))
+/// With a text to print if it fails: CHECK_WITH(a < b, "seed " + std::to_string(seed))
 #define CHECK_WITH(condition, values) \
   ::jointid::tests::expect((condition), #condition, (values), __FILE__, __LINE__)
 #define CHECK_CLOSE(a, b, tolerance) \

@@ -42,7 +42,7 @@ CHECK_CASE("binary: a cut takes the chromosome's positions from the left") {
   CHECK(cut(1, 4, 8, 12) == 0 && cut(1, 4, 0, 4) == 0 && cut(1, 4, 6, 6) == 0);
 }
 
-CHECK_CASE("binary: bits flip at the asked rate, each independently") {
+CHECK_CASE("binary: bits flip at the set rate, each independently") {
   base::Random random(2, 0, 0, 0);
   constexpr int kDraws = 50'000;
   const double probability = 0.05;
@@ -68,7 +68,7 @@ CHECK_CASE("binary: crossing exchanges one tail, or one stretch, and loses no bi
     options.bit_crossover = kind;
     options.crossover_probability = 1.0;
     options.mutation_probability = 0.0;
-    // All-zero and all-one parents: a child's bits tell where it was cut.
+    // Parents of only zeros and only ones: a child's bits show where it was cut.
     Eigen::MatrixXd parents(3, 2000);
     for (Eigen::Index i = 0; i < parents.cols(); ++i) {
       parents.col(i).setConstant(static_cast<double>(i % 2));
@@ -87,7 +87,7 @@ CHECK_CASE("binary: crossing exchanges one tail, or one stretch, and loses no bi
           return ((code_of(children(gene, who), 8) >> low) & 1U) != 0;
         };
         if (bit(i) == bit(i + 1)) {
-          changes = -100;  // alike parents, or a bit lost
+          changes = -100;  // equal parents, or a lost bit
         } else if (position > 0 && bit(i) != previous) {
           ++changes;
           ++cuts[static_cast<std::size_t>(position)];
@@ -99,7 +99,7 @@ CHECK_CASE("binary: crossing exchanges one tail, or one stretch, and loses no bi
       unlike += changes < 0 ? 0 : 1;
       uncut += changes == 0 ? 1 : 0;
     }
-    // Two points of 23 places, drawn in any order, are the same once in 23 times.
+    // Two points of 23 places, drawn in any order, are equal once in 23 times.
     const double expected = kind == BitCrossover::one_point ? 0.0 : 1.0 / 23.0;
     CHECK_CLOSE(static_cast<double>(uncut) / unlike, expected, 4.0 * std::sqrt(expected / unlike));
     for (std::size_t position = 1; position < 24; ++position) CHECK(cuts[position] > 0);
@@ -132,9 +132,7 @@ CHECK_CASE("binary: mutation flips the expected number of bits, or exactly one")
   }
 }
 
-CHECK_CASE(
-    "binary: finds a sphere's minimum as near as a Hamming cliff lets it, and nothing between "
-    "codes") {
+CHECK_CASE("binary: finds a sphere's minimum up to a Hamming cliff, and nothing between codes") {
   GaOptions options;
   options.coding = Coding::binary;
   options.bits = 10;

@@ -1,4 +1,4 @@
-// What sums and extremes over many rows are built of, against the same by plain loops.
+// Building blocks of sums and extremes over many rows, compared with plain loops.
 
 #include <algorithm>
 #include <cmath>
@@ -97,7 +97,7 @@ CHECK_CASE("scans: extremes of samples and steps, wherever they lie") {
       }
       const auto sizes = base::least_sizes(x.data(), 23);
       CHECK(sizes.any == any && sizes.positive == positive);
-      if (place > 0) x[place - 1] = x[place];  // a step of nothing
+      if (place > 0) x[place - 1] = x[place];  // a step of zero
       double least = kNone;
       double height = 0.0;
       for (Eigen::Index k = 0; k + 1 < 23; ++k) {
@@ -117,7 +117,7 @@ CHECK_CASE("scans: extremes of samples and steps, wherever they lie") {
   }
 }
 
-CHECK_CASE("scans: the samples of one sign end at the first other one, wherever it lies") {
+CHECK_CASE("scans: the samples of one sign end at the first other one, at any place") {
   for (const double side : {1.0, -1.0}) {
     for (const std::size_t count : {1U, 3U, 16U, 37U}) {
       std::vector<double> x(count, 0.5 * side);
@@ -126,7 +126,7 @@ CHECK_CASE("scans: the samples of one sign end at the first other one, wherever 
         for (const double other : {0.0, -0.0, -1e-300 * side}) {
           auto changed = x;
           changed[place] = other;
-          // The first sample tells the sign, if it has one.
+          // The first sample gives the sign, if it has one.
           const bool alone = place == 0 && other != 0.0;
           CHECK(base::one_sided(changed.data(), count) == (alone ? 1 : place));
         }
@@ -135,7 +135,7 @@ CHECK_CASE("scans: the samples of one sign end at the first other one, wherever 
   }
 }
 
-CHECK_CASE("columns: an inner product has the same bits alone and beside three others") {
+CHECK_CASE("columns: an inner product has the same bits alone and together with three others") {
   for (const Eigen::Index rows : {1, 7, 8, 29, 400}) {
     const Eigen::MatrixXd matrix = scattered(rows, 12);
     const Eigen::VectorXd together = base::products(matrix, matrix.col(0));
@@ -146,7 +146,7 @@ CHECK_CASE("columns: an inner product has the same bits alone and beside three o
   }
 }
 
-CHECK_CASE("scans: what is not finite or does not increase is seen at every place") {
+CHECK_CASE("scans: a value that is not finite or does not increase is seen at every place") {
   const Eigen::VectorXd time = Eigen::VectorXd::LinSpaced(21, 0.0, 1.0);
   CHECK(base::all_finite(time.data(), 21) && base::increases(time.data(), 20));
   for (Eigen::Index k = 0; k < 21; ++k) {
@@ -162,7 +162,7 @@ CHECK_CASE("scans: what is not finite or does not increase is seen at every plac
   }
 }
 
-CHECK_CASE("decays: sums by series are those of single exponentials") {
+CHECK_CASE("decays: sums by series equal sums of single exponentials") {
   base::Random random(5, 0);
   identify::FrictionNodes nodes;
   for (const int count : {0, 1, 11, 12, 13, 40, 200}) {
@@ -174,7 +174,7 @@ CHECK_CASE("decays: sums by series are those of single exponentials") {
     }
     nodes.first.push_back(nodes.speed.size());
   }
-  for (int i = 0; i < 12; ++i) {  // squares that are next to nothing, or nothing
+  for (int i = 0; i < 12; ++i) {  // squares that are almost or exactly zero
     nodes.speed.push_back(1e-155 * std::pow(0.3, i));
     nodes.weight.push_back(1e-3);
   }

@@ -25,7 +25,7 @@ const Names kCoulomb{"inertia", "coulomb", "viscous", "sensor_gain", "sensor_off
 const Names kStribeck{"inertia", "coulomb", "static", "viscous", "sensor_gain", "sensor_offset"};
 const Names kGeneral{"inertia", "coulomb",     "static_general",
                      "viscous", "sensor_gain", "sensor_offset"};
-constexpr double kExponent = 1.3;  // of the general decay, fixed: a table has one shape
+constexpr double kExponent = 1.3;  // of the general decay, fixed: a table has only one shape
 const Names kDirections{"inertia",          "coulomb_positive", "coulomb_negative",
                         "static_positive",  "static_negative",  "viscous_positive",
                         "viscous_negative", "sensor_gain"};
@@ -67,7 +67,7 @@ Domain domain_of(const Penalty& penalty) {
   return domain;
 }
 
-/// Random candidates, a quarter of them gathered about the optimum, which is the first.
+/// Random candidates; a quarter of them lie near the optimum, which is the first.
 Eigen::MatrixXd candidates_of(const Penalty& penalty, const Domain& domain, Eigen::Index count,
                               base::Pool& pool) {
   base::Random random(7, 0, 0, 0);
@@ -107,7 +107,7 @@ void check_equal(const Names& names, Residual residual, const WindowOptions& win
     worst = std::max(worst, std::fabs(found[i] - expected[i]) / allowed);
     CHECK(found[i] >= 0.0);
   }
-  CHECK_WITH(worst <= 1.0, names.back() + ": " + std::to_string(worst) + " of what is allowed");
+  CHECK_WITH(worst <= 1.0, names.back() + ": " + std::to_string(worst) + " of the tolerance");
 }
 
 CHECK_CASE("compressed: equal to the direct sum on random candidates and at the optimum") {
@@ -126,7 +126,7 @@ CHECK_CASE("compressed: equal with running integrals") {
   check_equal(kStribeck, Residual::sensor, {0, 0.05, 1.0, true}, 1000);
 }
 
-CHECK_CASE("compressed: running integrals go on from one block of rows to the next") {
+CHECK_CASE("compressed: running integrals continue from one block of rows to the next") {
   base::Pool pool(2);
   const auto direct = penalty_of(kStribeck, Residual::sensor, {0, 0.001, 1.0, true}, 0.5, 20'000);
   const auto domain = domain_of(direct);
@@ -142,7 +142,7 @@ CHECK_CASE("compressed: running integrals go on from one block of rows to the ne
   }
 }
 
-CHECK_CASE("compressed: stops when asked, also without shapes") {
+CHECK_CASE("compressed: stops on request, also without shapes") {
   const auto direct = penalty_of(kCoulomb, Residual::sensor);
   base::Cancel cancel;
   const identify::Stretch all{0, direct.windows().size()};
@@ -171,7 +171,7 @@ CHECK_CASE("compressed: an exponent that is searched is left to the direct sum")
   }
 }
 
-CHECK_CASE("compressed: accurate and never negative where the penalty all but vanishes") {
+CHECK_CASE("compressed: accurate and never negative where the penalty almost vanishes") {
   base::Pool pool(1);
   const auto direct = penalty_of(kStribeck, Residual::torque, {0, 0.02}, 0.0);
   const auto domain = domain_of(direct);
@@ -204,7 +204,7 @@ CHECK_CASE("compressed: the same bits for any number of threads") {
   CHECK(values[0] == values[1] && values[0] == values[2]);
 }
 
-CHECK_CASE("compressed: its residuals are the penalty's root, and have the derivatives they say") {
+CHECK_CASE("compressed: its residuals are the penalty's root, with correct derivatives") {
   base::Pool pool(1);
   for (const auto& names : {kCoulomb, kStribeck, kDirections, kGeneral}) {
     const auto direct = penalty_of(names, Residual::sensor, {0, 0.05}, 0.5, 1000);
@@ -232,7 +232,7 @@ CHECK_CASE("compressed: its residuals are the penalty's root, and have the deriv
   }
 }
 
-CHECK_CASE("compressed: refuses shapes it was not made for, and says why it is not exact") {
+CHECK_CASE("compressed: refuses shapes outside its bounds, and says why it is not exact") {
   base::Pool pool(1);
   const auto direct = penalty_of(kStribeck, Residual::sensor);
   auto domain = domain_of(direct);

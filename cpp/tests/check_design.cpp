@@ -1,5 +1,5 @@
-// Motions to choose among: they keep their bounds, the information is what the regressors say, and
-// costs are the same bits on any number of threads.
+// Candidate motions: they keep their bounds, the information follows from the regressors, and costs
+// have the same bits on any number of threads.
 
 #include <cmath>
 #include <vector>
@@ -65,7 +65,7 @@ Excitation excitation() {
   return {family(), scenario, joints, design::Held{}, design::Criterion::worst, 10};
 }
 
-CHECK_CASE("design: a motion keeps its bounds, also between the samples that were looked at") {
+CHECK_CASE("design: a motion keeps its bounds, also between the examined samples") {
   for (std::uint32_t number = 0; number < 50; ++number) {
     const auto trajectory = motion_of(family(), genes(number)).trajectory();
     for (int k = 0; k <= 20000; ++k) {
@@ -101,7 +101,7 @@ CHECK_CASE("design: the information of a steady motion is known in closed form")
   const auto found =
       design::information(signals, columns, {0.5, 0.0, 0.0, 0.01}, {}, 0.0, 0.0, 1e-3, 10)
           .information;
-  // 1000 intervals, each with noise 0.5: a unit of a rate r tells 1000 r^2 / 0.25.
+  // 1000 intervals, each with noise 0.5: a unit of a rate r gives the information 1000 r^2 / 0.25.
   const Eigen::Vector3d rates(1.0, 0.5, 2.0);
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
@@ -110,8 +110,8 @@ CHECK_CASE("design: the information of a steady motion is known in closed form")
   }
 }
 
-CHECK_CASE("design: what the trapezoidal rule misses of fading friction counts as a bias") {
-  // From rest at a constant acceleration; static friction fades within some samples.
+CHECK_CASE("design: the trapezoidal rule's error for decaying friction counts as a bias") {
+  // From rest at a constant acceleration; static friction decays within some samples.
   const double period = 1e-3;
   const double acceleration = 20.0;
   const model::Joint joint = thesis_setup().joint;
@@ -140,7 +140,8 @@ CHECK_CASE("design: what the trapezoidal rule misses of fading friction counts a
   CHECK_CLOSE(told.misled[0], missed, 0.02 * std::fabs(missed));
 }
 
-CHECK_CASE("design: what is slow tells nothing, a reversal little, noise at the ends its part") {
+CHECK_CASE(
+    "design: slow samples give no information, a reversal little, noise at the ends its part") {
   simulate::Signals signals;
   for (int k = 0; k <= 100; ++k) {
     signals.true_velocity.push_back(k < 50 ? -0.5 : 0.5);
@@ -178,7 +179,7 @@ CHECK_CASE("design: costs are the same bits on one thread and on four, before an
   CHECK(base::exp(judge.cost(judge.judge(trajectory, base::Cancel{}))) == one[3]);
 }
 
-CHECK_CASE("design: what no motion determines is not asked for") {
+CHECK_CASE("design: parameters that no motion determines are not requested") {
   Excitation judge = excitation();
   Eigen::MatrixXd candidates(family().genes(), 2);
   candidates << genes(0), genes(1);

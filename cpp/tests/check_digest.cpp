@@ -56,7 +56,7 @@ CHECK_CASE("digest: holds every inner product of the rows, whole or merged from 
   }
 }
 
-CHECK_CASE("shape axis: pieces cover the range, places and shapes agree") {
+CHECK_CASE("shape axis: pieces cover the range, positions and shapes agree") {
   const ShapeAxis gaussian(0.0, 200.0, 1.0, 0.4, 3);
   const ShapeAxis velocity(0.07, 1.7, 0.0, 1.0, 2);
   for (const auto& axis : {gaussian, velocity}) {

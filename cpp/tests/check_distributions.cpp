@@ -1,5 +1,5 @@
-// Quantiles against closed forms: Cauchy, two degrees of freedom, the exponential distribution, and
-// tables. The tests in Python compare them with SciPy over wide ranges.
+// Quantiles compared with closed forms (Cauchy, two degrees of freedom, the exponential
+// distribution) and with tables. The tests in Python compare them with SciPy over wide ranges.
 
 #include <cmath>
 #include <limits>
@@ -42,7 +42,7 @@ CHECK_CASE("distributions: chi-square of two is exponential") {
   }
 }
 
-CHECK_CASE("distributions: the ends, and what is no probability") {
+CHECK_CASE("distributions: the ends, and values that are no probability") {
   CHECK(base::student_quantile(0.0, 3.0) == -kInfinity);
   CHECK(base::student_quantile(1.0, 3.0) == kInfinity);
   CHECK(base::student_quantile(0.5, 3.0) == 0.0);

@@ -1,4 +1,4 @@
-// exp, log, sin and cos against the long double libm, in units in the last place.
+// exp, log, sin and cos compared with the long double libm, in units in the last place.
 
 #include <bit>
 #include <cfloat>
@@ -27,12 +27,12 @@ double ulps(double value, long double exact) {
   return static_cast<double>(std::fabs(static_cast<long double>(value) - exact) / unit);
 }
 
-/// The worst error seen, and where.
+/// The largest error, and its place.
 class Worst {
  public:
   void see(double x, double value, long double exact) {
     const double error = ulps(value, exact);
-    if (error <= error_) return;  // false for NaN: that is the worst of all
+    if (error <= error_) return;  // false for NaN, which is the worst error
     error_ = error;
     at_ = x;
   }
@@ -148,7 +148,7 @@ CHECK_CASE("elementary: sin and cos within 2 ulp up to 1.6e6 rad") {
   compare(base::cos, cos_exact, -1e-8, 1e-8, 10'000, 10'000);
 }
 
-CHECK_CASE("elementary: sin and cos beside the multiples of pi/2") {
+CHECK_CASE("elementary: sin and cos near the multiples of pi/2") {
   Worst sine;
   Worst cosine;
   base::Random draw(9, 0, 0, 0);
@@ -157,7 +157,7 @@ CHECK_CASE("elementary: sin and cos beside the multiples of pi/2") {
     double x = static_cast<double>(k * (std::numbers::pi_v<long double> / 2.0L));
     if (i % 4 == 1) x = std::nextafter(x, kInfinity);
     if (i % 4 == 2) x = std::nextafter(x, -kInfinity);
-    if (i % 4 == 3) x += std::ldexp(x, -static_cast<int>(draw.below(52)));  // a way off
+    if (i % 4 == 3) x += std::ldexp(x, -static_cast<int>(draw.below(52)));  // some distance away
     if (std::fabs(x) > 1.6e6) continue;
     sine.see(x, base::sin(x), sin_exact(x));
     cosine.see(x, base::cos(x), cos_exact(x));
@@ -176,7 +176,7 @@ CHECK_CASE("elementary: sin and cos at their edges and beyond 1.6e6 rad") {
   }
   base::Random draw(10, 0, 0, 0);
   for (int i = 0; i < 50'000; ++i) {
-    // The remainder is taken by 2 pi as a double: 4e-17 off, times the argument.
+    // The remainder is by 2 pi as a double: an error of 4e-17 times the argument.
     const double x = std::exp(std::log(1.6e6) + draw.uniform() * std::log(1e6));
     CHECK_CLOSE(base::sin(x), std::sin(x), 5e-17 * x + 1e-15);
     CHECK_CLOSE(base::cos(x), std::cos(x), 5e-17 * x + 1e-15);
@@ -187,7 +187,7 @@ CHECK_CASE("elementary: sin and cos at their edges and beyond 1.6e6 rad") {
   }
 }
 
-CHECK_CASE("elementary: pow is good to its exponent") {
+CHECK_CASE("elementary: pow is accurate to its exponent") {
   base::Random draw(11, 0, 0, 0);
   for (int i = 0; i < 50'000; ++i) {
     const double x = draw.uniform() * 3.0;

@@ -1,4 +1,4 @@
-// The genetic search: reproducible, inside its domain, and it finds what there is.
+// The genetic search: reproducible, inside its domain, and able to find known minima.
 
 #include <algorithm>
 #include <limits>
@@ -39,7 +39,7 @@ CHECK_CASE("genetic: the same bits for 1, 2 and 7 threads") {
 }
 
 CHECK_CASE("genetic: the default's bits are known") {
-  // Every operation is our own or exactly rounded, so these hold on any x86-64 host.
+  // Every operation is our own or exactly rounded, so these bits hold on any x86-64 host.
   const auto result = search_for(rippled, cube(3, -4.0, 5.0), {}, 42);
   CHECK(result.best ==
         Eigen::Vector3d(-0x1.40365100ad3p-7, -0x1.8b06696c2b8p-10, 0x1.7641d6af99cp-8));
@@ -158,12 +158,12 @@ CHECK_CASE("genetic: stays in the domain to the last bit; fixed parameters stay"
   CHECK_CLOSE(result.best[5], -3.0, 1e-6);
   CHECK(least[2] == 0.1 && most[2] == next);
   CHECK(least[1] < -5e307 && most[1] > 5e307);
-  // All fixed: one answer, and no crash.
+  // All parameters are fixed: one answer, and no crash.
   const Domain point{domain.lower, domain.lower};
   CHECK(search_for(sphere, point, {}, 1).best == point.lower);
 }
 
-CHECK_CASE("genetic: a penalty that is not a number loses") {
+CHECK_CASE("genetic: a penalty of NaN loses") {
   const auto result = search_for(
       [](const Candidate& x) {
         return x[0] < 0.0 ? std::numeric_limits<double>::quiet_NaN() : sphere(x);
@@ -178,7 +178,7 @@ CHECK_CASE("genetic: a penalty that is not a number loses") {
   CHECK(never.penalty == std::numeric_limits<double>::infinity());
 }
 
-CHECK_CASE("genetic: options are refused by name, value and limit") {
+CHECK_CASE("genetic: options are refused with name, value and limit") {
   const auto refused = [](auto spoil, std::string_view name, std::string_view value,
                           std::string_view limit) {
     GaOptions options;

@@ -1,4 +1,5 @@
-// A search interrupted anywhere goes on to the same bits, also through the bytes of a checkpoint.
+// A search interrupted at any place continues to the same bits, also through the bytes of a
+// checkpoint.
 
 #include <limits>
 #include <string>
@@ -77,7 +78,7 @@ CHECK_CASE("genetic state: stopped, resumed, stopped and resumed again") {
     const auto third = go(options, {&*second.state, {}, 50});
     CHECK(same_run(third, whole));
     CHECK(to_bytes(*third.state) == to_bytes(*whole.state));
-    // A run that is over stays over.
+    // A finished run stays finished.
     CHECK(same_run(go(options, {&*whole.state, {}, 50}), whole));
   }
 }
@@ -93,7 +94,7 @@ CHECK_CASE("genetic state: a converged run stays converged") {
   CHECK(same_run(go(options, {&*whole.state, {}, 50}, 2, {}, raised), whole));
 }
 
-CHECK_CASE("genetic state: alike is relative to the best, and a tolerance of 0 is none") {
+CHECK_CASE("genetic state: the spread is relative to the best, and a tolerance of 0 is none") {
   GaOptions options;
   options.generations = 5;
   options.tolerance = 1e-3;
@@ -143,7 +144,7 @@ CHECK_CASE("genetic state: bytes that are not a whole state are refused") {
   CHECK_REFUSED(state_from_bytes(bytes + "x"), "checkpoint");
 }
 
-CHECK_CASE("genetic state: another run's state is refused by what differs") {
+CHECK_CASE("genetic state: another run's state is refused with the difference") {
   GaOptions options;
   options.generations = 5;
   options.population = 10;

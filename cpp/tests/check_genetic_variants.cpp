@@ -1,4 +1,4 @@
-// Operators at work in a population, islands, the thesis's two variants, and random search.
+// Operators in a population, islands, the thesis's two variants, and random search.
 
 #include <cmath>
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace {
 using search::GaOptions;
 using search::MutationUnit;
 
-CHECK_CASE("mutation: genes, or one gene of an individual, at the asked rate") {
+CHECK_CASE("mutation: genes, or one gene of an individual, at the set rate") {
   GaOptions options;
   options.elite = 0;
   options.crossover_probability = 0.0;
@@ -48,7 +48,7 @@ CHECK_CASE("mutation: the steps of both shrinking operators are as long as their
   options.mutation_probability = 1.0;
   options.mutation_exponent = 2.0;
   const Eigen::MatrixXd parents = Eigen::MatrixXd::Constant(4, 20'000, 0.5);
-  const auto length = [&](search::Mutation mutation) {  // mean share of the way to a bound
+  const auto length = [&](search::Mutation mutation) {  // mean share of the distance to a bound
     options.mutation = mutation;
     const auto children = children_of(options, parents, Eigen::VectorXd::Ones(20'000), 2);
     return 2.0 * (children.array() - 0.5).abs().mean();
@@ -119,8 +119,8 @@ CHECK_CASE("islands: the same bits for 1, 2 and 7 threads") {
   }
 }
 
-CHECK_CASE("islands: the best goes round the ring, and the first island is a run of its own") {
-  // With a full elite but one nothing else moves: each migration brings the best one island on.
+CHECK_CASE("islands: the best moves around the ring, and the first island is a run of its own") {
+  // If all but one are elite, nothing else moves: each migration moves the best to the next island.
   GaOptions options;
   options.population = 5;
   options.islands = 4;
@@ -144,7 +144,7 @@ CHECK_CASE("islands: the best goes round the ring, and the first island is a run
   minimise_genetic(watched, cube(3, -1.0, 1.0), options, 5, 0, pool, {});
   for (const int at : {0, 10}) CHECK(holders[static_cast<std::size_t>(at)] == 1);
   CHECK(holders[11] == 2 && holders[20] == 2 && holders[21] == 3 && holders[31] == 4);
-  // Individuals are numbered through: before any migration the first island is the single run.
+  // Individuals are numbered through, so before any migration the first island is the single run.
   GaOptions several;
   several.islands = 3;
   several.tolerance = 0.0;
@@ -179,7 +179,7 @@ CHECK_CASE("presets: the thesis's settings, deterministic, adapting") {
   }
 }
 
-CHECK_CASE("islands: the same bits where their breeding is worth threads") {
+CHECK_CASE("islands: the same bits where breeding uses threads") {
   GaOptions options;
   options.population = 700;
   options.generations = 6;

@@ -1,4 +1,4 @@
-// Bad input carries its argument, value and reason; a bug does not look like bad input.
+// Bad input has its argument, value and reason; a bug does not look like bad input.
 
 #include <cmath>
 #include <string>
@@ -24,7 +24,7 @@ InputError refused(Call call) {
   return InputError("nothing was refused");
 }
 
-CHECK_CASE("input error: a requirement says which number, what it is, and its limit") {
+CHECK_CASE("input error: a requirement names the number, its value and its limit") {
   const base::Requirement require("joint");
   const auto low = refused([&] { require.above_zero("inertia", -2.5); });
   CHECK(low.argument() == "joint.inertia");
@@ -50,7 +50,7 @@ CHECK_CASE("input error: a sentence without argument or value is the reason") {
   CHECK(std::string(InputError("too long", "windows").what()) == "windows: too long");
 }
 
-CHECK_CASE("input error: numbers have so many digits as asked for, and no zeros behind") {
+CHECK_CASE("input error: numbers have the requested digits, and no trailing zeros") {
   CHECK(base::with_digits(-2.5, 15) == "-2.5");
   CHECK(base::with_digits(1e-14, 2) == "1e-14");
   CHECK(base::with_digits(1.0 / 3.0, 10) == "0.3333333333");

@@ -1,5 +1,5 @@
-// The gain by instruments: free of the bias that noise of the reading, or friction that the model
-// lacks, gives to either side of a regression.
+// The gain by instruments is free of bias. In a plain regression, noise of the reading, or friction
+// that the model lacks, biases it to either side.
 
 #include <cmath>
 #include <memory>
@@ -26,7 +26,7 @@ const std::vector<std::string> kTerms{"inertia", "coulomb",     "static",
                                       "viscous", "sensor_gain", "sensor_offset"};
 constexpr Eigen::Index kGain = 4;
 
-/// A link under gravity on the sensor, whose reading is noisy; viscous friction falls by `drift`.
+/// A link under gravity on the sensor, with a noisy reading; viscous friction falls by `drift`.
 Recording hanging(double noise, double drift, int samples = 12000) {
   const Truth truth;
   Recording r = moving(samples, 0.001, true, 3);
@@ -122,7 +122,7 @@ CHECK_CASE("instruments: the observed residual has the reading itself") {
   CHECK(observed.norm() < 0.5 * expected.norm());
   projected.observe(best, observed);
   CHECK_CLOSE((observed - expected).norm() / expected.norm(), 0.0, 1e-12);
-  // The moments vanish: what two-stage least squares means.
+  // The moments vanish, as two-stage least squares requires.
   for (const auto i : {1, 2, 3, 4, 5}) {
     const double cosine =
         jacobian.col(i).dot(observed) / (jacobian.col(i).norm() * observed.norm());

@@ -1,4 +1,4 @@
-// Linear least squares under inequalities, against every combination of active constraints.
+// Linear least squares under inequalities, compared with every combination of active constraints.
 
 #include <cmath>
 #include <limits>
@@ -100,7 +100,7 @@ CHECK_CASE("least squares: the units of a parameter change nothing") {
   }
 }
 
-CHECK_CASE("least squares: thin boxes, near the plain answer and far from it") {
+CHECK_CASE("least squares: thin boxes, near the unconstrained answer and far from it") {
   for (std::uint32_t trial = 0; trial < 200; ++trial) {
     base::Random random(10, 0, 0, trial);
     const Eigen::MatrixXd a = drawn(random, 12, 3);
@@ -126,7 +126,7 @@ CHECK_CASE("least squares: random half-spaces") {
     const Eigen::MatrixXd a = drawn(random, n + 3 + random.below(10), n);
     const Eigen::VectorXd b = drawn(random, a.rows(), 1);
     const Eigen::MatrixXd g = drawn(random, m, n);
-    // Some point is inside by a margin, so that feasibility is no matter of rounding.
+    // Some point is inside by a margin, so that rounding does not decide about feasibility.
     const Eigen::VectorXd inside = drawn(random, n, 1);
     const Eigen::VectorXd h = g * inside - 0.3 * (drawn(random, m, 1).array() + 1.01).matrix();
     const auto found = constrained_least_squares(a, b, g, h);
@@ -156,7 +156,7 @@ CHECK_CASE("least squares: unsatisfiable constraints are reported") {
   }
 }
 
-CHECK_CASE("least squares: no constraint, or none that binds, is the plain answer") {
+CHECK_CASE("least squares: without a binding constraint, the unconstrained answer") {
   base::Random random(5, 0, 0, 0);
   const Eigen::MatrixXd a = drawn(random, 20, 3);
   const Eigen::VectorXd b = drawn(random, 20, 1);
@@ -178,7 +178,7 @@ CHECK_CASE(
   const auto [g, h] = box(Eigen::Vector3d::Constant(-10.0), Eigen::Vector3d::Constant(10.0));
   const Eigen::VectorXd shared = constrained_least_squares(a, b, g, h).x;
   CHECK_CLOSE((shared - Eigen::Vector3d(2.0, 1.0, 2.0)).norm(), 0.0, 1e-5);
-  // One of the twins is held: the other takes the rest.
+  // One of the twins is fixed: the other takes the rest.
   const auto held = box(Eigen::Vector3d(-10.0, -10.0, 3.0), Eigen::Vector3d::Constant(10.0));
   const Eigen::VectorXd rest = constrained_least_squares(a, b, held.g, held.h).x;
   CHECK_CLOSE((rest - Eigen::Vector3d(1.0, 1.0, 3.0)).norm(), 0.0, 1e-5);

@@ -1,4 +1,4 @@
-// Load friction: the balance solved for the torque, against torques made sample by sample.
+// Load friction: the balance solved for the torque, compared with torques made sample by sample.
 
 #include "check.hpp"
 #include "identify/balance/load_friction.hpp"
@@ -17,8 +17,7 @@ using identify::Residual;
 const std::vector<std::string> kTerms{"inertia",       "coulomb",     "viscous",
                                       "load_friction", "sensor_gain", "sensor_offset"};
 
-/// A moving joint with a sensor, whose torque has load friction by the drive's torque or the
-/// link's.
+/// A moving joint with a sensor. Its torque has load friction by the drive's torque or the link's.
 identify::Recording loaded(double share, bool by_link) {
   auto r = moving(4001, 1e-3, false, 3);
   Truth truth;
@@ -171,7 +170,7 @@ CHECK_CASE("load friction: without a sensor the share of the inertia behind the 
   CHECK(((above - at) / 1e-6 - jacobian.col(6)).norm() < 1e-3 * jacobian.col(6).norm());
 }
 
-CHECK_CASE("load friction: a link's torque must be there") {
+CHECK_CASE("load friction: refused without a link torque") {
   identify::WindowOptions windows;
   windows.duration = 0.01;
   CHECK_REFUSED(Penalty({loaded(0.2, false)}, {"inertia", "coulomb", "load_friction_link"}, windows,

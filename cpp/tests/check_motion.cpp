@@ -1,4 +1,4 @@
-// One integration step: a stuck joint stays, friction takes energy only, the order holds through
+// One integration step: a stuck joint stays, friction only removes energy, the order holds through
 // reversals, bristles are stable at any stiffness.
 
 #include "simulate/integration_step.hpp"
@@ -27,7 +27,7 @@ std::uint64_t bits(double x) {
   return std::bit_cast<std::uint64_t>(x);
 }
 
-/// Position after `time` under a torque of time.
+/// Position after `time` under a torque that depends on time.
 template <class Torque>
 Motion moved(const Joint& joint, Motion motion, double time, int steps, Torque torque) {
   const double h = time / steps;
@@ -71,7 +71,7 @@ CHECK_CASE("motion: a joint that coasts stops, once, and stays") {
   CHECK(motion.velocity == 0.0);
 }
 
-CHECK_CASE("motion: asymmetric joints break away where their direction says") {
+CHECK_CASE("motion: asymmetric joints break away in the right direction") {
   Joint joint = thesis();
   joint.weights.clear();
   joint.friction[0].negative = 5.0;
@@ -86,7 +86,7 @@ CHECK_CASE("motion: asymmetric joints break away where their direction says") {
   CHECK(motion.velocity < 0.0);
 }
 
-CHECK_CASE("motion: friction takes energy only, whatever the joint and the step") {
+CHECK_CASE("motion: friction only removes energy, for any joint and step") {
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     base::Random random(seed, 0, 0, 0);
     const auto up_to = [&](double most) { return most * random.uniform(); };
@@ -121,7 +121,7 @@ CHECK_CASE("motion: friction takes energy only, whatever the joint and the step"
       const double before = stored();
       const double start = motion.position;
       simulate::advance(joint, motion, torque, h);
-      // Nothing else acts: what is gained beyond the torque's work would be friction's.
+      // No other force acts, so any energy beyond the torque's work would come from friction.
       const double gained = stored() - before - torque * (motion.position - start);
       CHECK_WITH(gained <= 1e-11 * (1.0 + before),
                  "seed " + std::to_string(seed) + ": " + std::to_string(gained));
@@ -142,8 +142,8 @@ CHECK_CASE("motion: second order, with reversals, under gravity and Stribeck fri
     double last = 0.0;
     for (const int steps : {3000, 6000, 12000, 24000}) {
       const double error = std::fabs(moved(joint, {}, 3.0, steps, torque).position - fine);
-      // Four is the second order's factor; where a reversal falls in its step makes it uneven, and
-      // with bristles a step's luck can be better than its order.
+      // Four is the factor of second order. The place of a reversal in its step makes it uneven,
+      // and with bristles a step may by chance be better than its order.
       if (last > 0.0 && !bristles) CHECK_WITH(error < last / 2.5, std::to_string(last / error));
       if (first == 0.0) first = error;
       last = error;
@@ -154,7 +154,7 @@ CHECK_CASE("motion: second order, with reversals, under gravity and Stribeck fri
 }
 
 CHECK_CASE("motion: where a joint stops within a step is known") {
-  // Dry and viscous friction alone: it stops after m/c ln(1 + c v/F).
+  // With only dry and viscous friction, the joint stops after m/c ln(1 + c v/F).
   Joint joint;
   joint.inertia = 2.0;
   joint.friction = {{SpeedBasis::constant, 10.0, 10.0}, {SpeedBasis::linear, 4.0, 4.0}};
@@ -171,7 +171,7 @@ CHECK_CASE("motion: where a joint stops within a step is known") {
   }
 }
 
-CHECK_CASE("motion: a joint that is turned round within a step gains what fine steps give it") {
+CHECK_CASE("motion: a joint that reverses within a step gains what fine steps give it") {
   Joint joint = thesis();
   joint.weights.clear();
   const auto push = [](double) { return -150.0; };
@@ -215,7 +215,7 @@ CHECK_CASE("motion: the friction of bristles follows the speed within a coarse s
   }
 }
 
-CHECK_CASE("motion: stiff bristles do not blow up and hold the load") {
+CHECK_CASE("motion: stiff bristles stay stable and hold the load") {
   Joint joint = thesis();
   joint.bristles = true;
   joint.bristle_damping = 10.0;

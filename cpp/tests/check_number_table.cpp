@@ -1,5 +1,5 @@
-// Tables of numbers: what is plain is read to the last bit, everything else is left alone. The
-// tests in Python compare with the other parser on random tables.
+// Tables of numbers: plain ones are read to the last bit, all others are left alone. The tests in
+// Python compare with the other parser on random tables.
 
 #include <cstdlib>
 #include <string>
@@ -26,7 +26,7 @@ CHECK_CASE("number table: plain rows") {
   CHECK((*table)(1, 1) == 3.0);
 }
 
-CHECK_CASE("number table: digits by eights, and what stands among them") {
+CHECK_CASE("number table: digits by eights, with other characters among them") {
   const auto table =
       number_table("0.12345678,-9.423353971,1234567.00000001,0.1234567890123", 0, ',', 4);
   CHECK(table.has_value());
@@ -50,7 +50,7 @@ CHECK_CASE("number table: digits by eights, and what stands among them") {
   }
 }
 
-CHECK_CASE("number table: what is not plain is left to another parser") {
+CHECK_CASE("number table: other tables are left to another parser") {
   for (const char* const rows :
        {"",         "\n",          "1",       "1,2,3",   "1,2\n3",    "1,",       ",1",
         "1,nan",    "1,-inf",      "1,0x1p3", "1,1_0",   "1,1e",      "1,1e999",  "1,1e-999",
@@ -68,7 +68,7 @@ CHECK_CASE("number table: random bytes read nothing beyond the text") {
   base::Random draw(11, 0, 0, 0);
   for (int trial = 0; trial < 20000; ++trial) {
     std::string rows(static_cast<std::size_t>(draw.uniform() * 40.0), ' ');
-    // On the heap and without a zero at its end, so that a sanitizer sees what is read beyond.
+    // On the heap and without a final zero, so that a sanitizer detects reads beyond the end.
     for (char& sign : rows) {
       sign = signs[static_cast<std::size_t>(draw.uniform() * static_cast<double>(signs.size()))];
     }
@@ -80,7 +80,7 @@ CHECK_CASE("number table: random bytes read nothing beyond the text") {
   }
 }
 
-CHECK_CASE("control characters: each is found, wherever it stands") {
+CHECK_CASE("control characters: each is found, at any place") {
   for (int byte = 0; byte < 256; ++byte) {
     const bool text = byte > 31 ? byte != 127 : byte > 8 && byte < 14;
     for (const std::size_t place : {std::size_t{0}, std::size_t{4095}, std::size_t{4096}}) {

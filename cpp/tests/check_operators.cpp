@@ -1,4 +1,4 @@
-// Genetic operators against their published distributions.
+// Genetic operators compared with their published distributions.
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ double distance(std::vector<double> values, Cumulative cumulative) {
   return largest;
 }
 
-const double kFar = 2.0 / std::sqrt(kDraws);  // passed by chance once in 1500
+const double kFar = 2.0 / std::sqrt(kDraws);  // exceeded by chance once in 1500
 
 /// Deb and Agrawal's density of the spread factor.
 double spread_density(double spread, double eta) {
@@ -84,7 +84,7 @@ CHECK_CASE("operators: SBX's spread factor has the published density") {
           simulated_binary_crossover(0.5 - half, 0.5 + half, random.uniform(), eta);
       spreads.push_back((two - one) / (2.0 * half));
     }
-    // The distribution function, by the trapezoid over a table of the density.
+    // The distribution function, by the trapezoidal rule over a table of the density.
     constexpr int kTable = 200'000;
     constexpr double kLast = 20.0;
     std::vector<double> table(kTable + 1, 0.0);
@@ -112,8 +112,8 @@ CHECK_CASE("operators: SBX at the ends of its draw is finite") {
 }
 
 CHECK_CASE("operators: non-uniform mutation has the published distribution") {
-  // A step towards a bound goes 1 - u^e of the way, e = (1 - progress)^exponent: the share x has
-  // the distribution function 1 - (1 - x)^(1/e).
+  // A step moves by the share 1 - u^e of the distance to a bound, e = (1 - progress)^exponent. The
+  // share x has the distribution function 1 - (1 - x)^(1/e).
   for (const double exponent : {1.0, 2.0, 5.0}) {
     for (const double progress : {0.0, 0.3, 0.8}) {
       for (const bool upper : {false, true}) {

@@ -1,4 +1,4 @@
-// Own terms: series that a recording brings along, one coefficient each.
+// Own terms: series of the recording, one coefficient each.
 
 #include <cmath>
 #include <cstdint>
@@ -23,7 +23,7 @@ using identify::RecordingView;
 using identify::Residual;
 using identify::Window;
 
-/// Series whose rises no other term has, and the recording that they belong to.
+/// Series with rises that no other term has, and their recording.
 struct Own {
   explicit Own(int count, double torque_of_each = 0.0) : recording(moving(4000, 0.001, true, 7)) {
     add_torque(recording, Truth{}, false);
@@ -74,7 +74,7 @@ search::Domain domain_of(const Penalty& penalty) {
   return domain;
 }
 
-CHECK_CASE("own terms: a row stands for a term a signal, with its name and unit") {
+CHECK_CASE("own terms: a row represents one term per signal, with its name and unit") {
   const auto term = identify::find_term("viscous_of_q6_rate");
   CHECK(identify::is_own(term) && !identify::is_friction(term) && !term.simulated);
   CHECK(term.name == "viscous_of_q6_rate" && term.unit == "N·m/[q6_rate]");
@@ -84,7 +84,7 @@ CHECK_CASE("own terms: a row stands for a term a signal, with its name and unit"
   CHECK_REFUSED(identify::find_term("viscosity_of_q6"), "viscous_of_<signal>");
 }
 
-CHECK_CASE("own terms: a window has the rise of the series over what is usable") {
+CHECK_CASE("own terms: a window has the rise of the series over the usable intervals") {
   const Own own(1);
   const auto view = own.view();
   std::vector<std::uint8_t> usable(static_cast<std::size_t>(view.samples() - 1), 1);
@@ -117,7 +117,7 @@ CHECK_CASE("own terms: fifty of them are found, and the penalty stays compressed
   }
   Eigen::VectorXd residual;
   compressed.residuals(found.best, residual, nullptr);
-  // A row a parameter, not a row a window: nothing in the search looks at samples or windows.
+  // One row per parameter, not per window: no part of the search reads samples or windows.
   CHECK(residual.size() < direct.window_count());
   CHECK_CLOSE(compressed(found.best), direct(found.best), 1e-9 * (1e-3 + direct(found.best)));
 }

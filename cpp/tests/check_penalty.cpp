@@ -1,4 +1,4 @@
-// The integral penalty on recordings whose parameters are known.
+// The integral penalty on recordings with known parameters.
 
 #include <limits>
 #include <stdexcept>
@@ -73,7 +73,7 @@ CHECK_CASE("penalty: zero at the truth to rounding") {
 CHECK_CASE("penalty: zero at the truth with stuck samples and a gap, thanks to the mask") {
   const Truth truth;
   auto r = moving(3000, 0.001, false, 2);
-  Eigen::Index stuck = 1000;  // from full motion, so that nothing beside the run counts as slow
+  Eigen::Index stuck = 1000;  // from full motion, so that nothing next to the run counts as slow
   while (std::fabs(r.velocity[stuck]) < 2.0 || std::fabs(r.velocity[stuck + 80]) < 2.0) ++stuck;
   const double moved = r.position[stuck + 79] - r.position[stuck];
   r.position.segment(stuck, 80).setConstant(r.position[stuck]);
@@ -83,7 +83,7 @@ CHECK_CASE("penalty: zero at the truth with stuck samples and a gap, thanks to t
   r.time.tail(999).array() += 3.0;
   add_torque(r, truth, false);
   r.torque.segment(stuck, 79).array() += 11.0;  // set-valued: anything up to break-away
-  r.torque[2000] = -500.0;                      // the gap's held torque means nothing
+  r.torque[2000] = -500.0;                      // the held torque in the gap has no meaning
   const Names names{"inertia", "coulomb", "static", "viscous"};
   Eigen::VectorXd theta(5);
   theta << truth.inertia, truth.coulomb, truth.static_excess, truth.viscous, truth.stribeck;
@@ -191,7 +191,7 @@ CHECK_CASE("penalty: a population's penalties are the same bits as one by one") 
   }
 }
 
-CHECK_CASE("penalty: bad terms and windows are refused by name") {
+CHECK_CASE("penalty: bad terms and windows are refused with their name") {
   const auto r = recorded({}, false);
   const auto with = recorded({}, true);
   const auto torque = Residual::torque;
@@ -207,7 +207,7 @@ CHECK_CASE("penalty: bad terms and windows are refused by name") {
   CHECK_REFUSED(penalty_of({r}, kTorqueOnly, torque, {10, 0.1}), "not both");
 }
 
-CHECK_CASE("penalty: bad recordings and parameters are refused by name") {
+CHECK_CASE("penalty: bad recordings and parameters are refused with their name") {
   const auto refused = [](auto spoil, std::string_view part) {
     auto r = recorded({}, true);
     spoil(r);

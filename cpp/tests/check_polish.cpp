@@ -1,4 +1,4 @@
-// The local search in a box, against exhaustive answers and known minima.
+// The local search in a box, compared with exhaustive answers and known minima.
 
 #include <cmath>
 #include <limits>
@@ -63,7 +63,7 @@ CHECK_CASE("polish: bounded linear least squares, from inside, from bounds and f
   }
 }
 
-CHECK_CASE("polish: the first step of a linear problem is all but the whole") {
+CHECK_CASE("polish: the first step of a linear problem does almost everything") {
   base::Pool pool(1);
   base::Random random(8, 0, 0, 0);
   const Eigen::MatrixXd a = drawn(random, 12, 3);
@@ -78,7 +78,7 @@ CHECK_CASE("polish: the first step of a linear problem is all but the whole") {
   const auto once = polish(linear, wide, Eigen::VectorXd::Constant(3, 3.0), pool, 1);
   CHECK_CLOSE((once.best - answer).norm(), 0.0, 1e-4);
   CHECK(!once.converged);
-  // One step without gain may be rounding; the second ends it.
+  // One step without gain may be rounding; the second one ends the search.
   CHECK(polish(linear, wide, answer, pool, 100).iterations == 2);
 }
 
@@ -138,7 +138,8 @@ CHECK_CASE("polish: never worse than the start, whatever the function does") {
       residual = (a * x).array().sin() + 0.3 * (a * x).array().abs();
       if (trial % 3 == 1 && x[0] > 0.2) residual[0] = std::numeric_limits<double>::quiet_NaN();
       if (trial % 3 == 2 && x[1] > 0.2) residual[0] = std::numeric_limits<double>::infinity();
-      if (jacobian != nullptr) *jacobian = trial % 2 == 0 ? wrong : a;  // no derivative of it
+      if (jacobian != nullptr)
+        *jacobian = trial % 2 == 0 ? wrong : a;  // no derivative of the function
     };
     const Domain domain = box({-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0});
     Eigen::VectorXd start = drawn(random, 3, 1);
@@ -153,7 +154,7 @@ CHECK_CASE("polish: never worse than the start, whatever the function does") {
   }
 }
 
-CHECK_CASE("polish: fixed parameters stay, starts outside are brought in, limits are kept") {
+CHECK_CASE("polish: fixed parameters stay, starts outside are moved in, limits are kept") {
   base::Pool pool(1);
   const auto fixed = polish(rosenbrock, box({2.0, -5.0}, {2.0, 5.0}), Eigen::Vector2d(9, 9), pool);
   CHECK(fixed.best[0] == 2.0);
@@ -169,7 +170,7 @@ CHECK_CASE("polish: fixed parameters stay, starts outside are brought in, limits
                                        "poll", __FILE__, __LINE__) == "interrupted");
 }
 
-CHECK_CASE("polish: parameters without influence and twins do no harm") {
+CHECK_CASE("polish: parameters without influence and identical ones do no harm") {
   base::Pool pool(1);
   const ResidualFunction flat = [](const Eigen::VectorXd& x, Eigen::VectorXd& residual,
                                    Eigen::MatrixXd* jacobian) {
@@ -184,7 +185,7 @@ CHECK_CASE("polish: parameters without influence and twins do no harm") {
   CHECK(result.best[2] == 2.0);
 }
 
-CHECK_CASE("polish: brings a joint's parameters home, both residuals") {
+CHECK_CASE("polish: finds a joint's parameters, with both residuals") {
   const Truth truth;
   auto r = moving(2000, 0.001, true, 8);
   add_torque(r, truth, true);
@@ -197,7 +198,7 @@ CHECK_CASE("polish: brings a joint's parameters home, both residuals") {
     const identify::Penalty penalty(
         {r}, {"inertia", "coulomb", "static", "viscous", "sensor_gain", "sensor_offset"}, {0, 0.02},
         residual, true);
-    // The sensor's penalty has a second way down, to an infinite gain: start near enough.
+    // The sensor's penalty also falls towards an infinite gain, so the start must be near enough.
     base::Random random(4, 0, 0, 0);
     for (int trial = 0; trial < 10; ++trial) {
       const Eigen::VectorXd start =

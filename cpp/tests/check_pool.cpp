@@ -1,4 +1,5 @@
-// Threads for one call: every index once, exceptions come out, a poll that throws ends long work.
+// Threads for one call: every index once, exceptions reach the caller, a poll that throws ends long
+// work.
 
 #include <atomic>
 #include <chrono>
@@ -87,7 +88,7 @@ CHECK_CASE("pool: work runs on other threads, all threads take part, the poll st
   CHECK(!poll_elsewhere);
 }
 
-CHECK_CASE("pool: an exception of the work comes out, and the pool works on") {
+CHECK_CASE("pool: an exception of the work reaches the caller, and the pool continues") {
   for (const int threads : {1, 4}) {
     Pool pool(threads);
     for (int round = 0; round < 20; ++round) {
@@ -105,7 +106,7 @@ CHECK_CASE("pool: an exception of the work comes out, and the pool works on") {
       });
       CHECK(visits == 100);
     }
-    // All chunks throw at once: one comes out, none is lost in terminate().
+    // All chunks throw at once: one exception reaches the caller, none ends in terminate().
     message_of<std::runtime_error>(
         [&] {
           pool.for_each(1000, [](std::size_t, std::size_t) { throw std::runtime_error("all"); });

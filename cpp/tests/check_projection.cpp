@@ -1,4 +1,4 @@
-// The projected search against the separable one over the same direct sums.
+// The projected search compared with the separable one over the same direct sums.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -53,7 +53,7 @@ CHECK_CASE("projection: the value and derivatives of the penalty with the best c
     for (const bool general : {false, true}) {
       const auto penalty = penalty_of(general ? kGeneral : kPlain, residual, 0.5, 3);
       auto domain = general ? general_domain() : plain_domain();
-      for (const int bound : {0, 1, 2}) {  // none, one that holds, a fixed coefficient
+      for (const int bound : {0, 1, 2}) {  // none, one that is active, a fixed coefficient
         if (bound == 1) domain.upper[0] = 12.0;
         if (bound == 2) domain.lower[2] = domain.upper[2] = 11.0;
         const Projection projection(penalty, domain, {}, cancel);
@@ -94,8 +94,8 @@ CHECK_CASE("projection: the optimum of the separable search, with and without bo
     for (const auto residual : {Residual::torque, Residual::sensor}) {
       for (const bool general : {false, true}) {
         const auto penalty = penalty_of(general ? kGeneral : kPlain, residual, 0.05, seed);
-        // Coulomb friction of 25: free, held a little below, and held so far below that the
-        // decaying friction takes its place, until its shape is at the end of the range.
+        // Coulomb friction of 25: free, bounded slightly below, and bounded so far below that the
+        // decaying friction replaces it, until its shape is at the end of the range.
         for (const double highest : {50.0, 24.5, 13.0}) {
           auto domain = general ? general_domain() : plain_domain();
           domain.upper[0] = highest;
@@ -119,7 +119,7 @@ CHECK_CASE("projection: the optimum of the separable search, with and without bo
   }
 }
 
-CHECK_CASE("projection: coefficients that nothing tells apart get some value within their bounds") {
+CHECK_CASE("projection: coefficients that nothing separates get some value within their bounds") {
   base::Pool pool(2);
   // The offset is half the difference of the directions' Coulomb frictions.
   const Names terms{"coulomb_positive", "coulomb_negative", "static",
@@ -136,8 +136,7 @@ CHECK_CASE("projection: coefficients that nothing tells apart get some value wit
   CHECK((projected.found->best.array() <= domain.upper.array()).all());
 }
 
-CHECK_CASE(
-    "projection: the optimum is that to which Newton's steps lead, beyond what values tell") {
+CHECK_CASE("projection: the optimum is the limit of Newton's steps, finer than values show") {
   base::Pool pool(1);
   const auto penalty = penalty_of(kPlain, Residual::sensor, 0.5, 3);
   const auto domain = plain_domain();
@@ -161,7 +160,7 @@ CHECK_CASE("projection: the same bits for any number of threads") {
   }
 }
 
-CHECK_CASE("projection: leaves what some windows cannot tell to the compressed penalty") {
+CHECK_CASE("projection: leaves to the compressed penalty what some windows cannot decide") {
   base::Pool pool(1);
   auto domain = plain_domain();
   const auto noisy = penalty_of(kPlain, Residual::sensor, 300.0, 4);

@@ -1,4 +1,4 @@
-// Window integrals against closed forms.
+// Window integrals compared with closed forms.
 
 #include <cmath>
 #include <numbers>
@@ -133,7 +133,8 @@ CHECK_CASE("quadrature: static friction over a ramp is second order to the error
     for (const int samples : {51, 101, 201, 401, 1601}) {
       const double found = friction_of(ramp(samples, 1.0, start, slope), shape);
       const double step = 1.0 / (samples - 1);
-      // The trapezoid's bound: step^2 / 12 times the largest second derivative over time.
+      // The bound of the trapezoidal rule: step^2 / 12 times the largest second derivative over
+      // time.
       CHECK_CLOSE(found, exact, step * step / 12.0 * 2.0 * shape * slope * slope);
     }
   }
@@ -165,7 +166,7 @@ CHECK_CASE("quadrature: a held torque and a measured one") {
   CHECK_CLOSE(result[0], 0.1 * 1.5 + 0.2 * 3.0 + 0.1 * 1.5 - 0.4 * 0.25 + 0.2 * 50.25, 1e-13);
 }
 
-CHECK_CASE("quadrature: windows and unusable intervals, against one interval at a time") {
+CHECK_CASE("quadrature: windows and unusable intervals, compared with one interval at a time") {
   const auto r = moving(9000, 0.003, true, 3);  // several blocks of nodes
   std::vector<std::uint8_t> usable(8999, 1);
   base::Random random(4, 0, 0, 0);
@@ -220,7 +221,7 @@ CHECK_CASE("quadrature: windows without a usable interval integrate to zero") {
   CHECK(column.isZero(0.0));
 }
 
-CHECK_CASE("quadrature: Simpson's rule less the trapezoid's, where nothing reverses") {
+CHECK_CASE("quadrature: Simpson's rule minus the trapezoidal rule, where nothing reverses") {
   const auto r = ramp(40, 1.0, -0.4, 1.0);
   std::vector<std::uint8_t> usable(39, 1);
   usable[30] = 0;
@@ -263,7 +264,7 @@ CHECK_CASE("quadrature: reads the cancel flag") {
   CHECK(cancelled);
 }
 
-CHECK_CASE("quadrature: directions apart add up to both") {
+CHECK_CASE("quadrature: separate directions add up to both") {
   const auto r = ramp(1001, 2.0, -0.7, 1.0);  // reverses inside an interval
   for (const std::string name : {"coulomb", "static"}) {
     const Whole whole(r);
@@ -286,7 +287,7 @@ CHECK_CASE("quadrature: directions apart add up to both") {
   CHECK_CLOSE(integral_of(identify::find_term("viscous_negative"), r), -0.245, 1e-5);
 }
 
-CHECK_CASE("quadrature: Coulomb friction of one direction is there in that direction alone") {
+CHECK_CASE("quadrature: Coulomb friction of one direction exists only in that direction") {
   for (const double v : {0.7, -0.7}) {
     const auto r = ramp(101, 2.0, v, 0.0);
     const auto of = [&](const char* key) { return integral_of(identify::find_term(key), r); };
@@ -295,12 +296,12 @@ CHECK_CASE("quadrature: Coulomb friction of one direction is there in that direc
   }
 }
 
-CHECK_CASE("quadrature: a sample at rest has no direction, wherever it stands in a window") {
+CHECK_CASE("quadrature: a sample at rest has no direction, at any place in a window") {
   for (const double side : {1.0, -1.0}) {
     for (const Eigen::Index rest : {0, 4, 10}) {
       auto r = ramp(11, 1.0, 0.5 * side, 0.0);
       r.velocity[rest] = 0.0;
-      // Half of each interval beside it is without friction.
+      // Half of each neighbouring interval is without friction.
       const double time = rest == 4 ? 0.9 : 0.95;
       CHECK_CLOSE(integral_of(Integral::friction, r), side * time, 1e-14);
       CHECK_CLOSE(friction_of(r, 3.0), side * time * std::exp(-0.75), 1e-14);
@@ -308,7 +309,7 @@ CHECK_CASE("quadrature: a sample at rest has no direction, wherever it stands in
   }
 }
 
-CHECK_CASE("quadrature: harmonics count turns of the joint or of the motor") {
+CHECK_CASE("quadrature: harmonics count revolutions of the joint or of the motor") {
   const auto r = ramp(20001, 2.0, 0.7, 0.0);
   const auto integral = [](double frequency) {
     return (1.0 - std::cos(1.4 * frequency)) / (0.7 * frequency);

@@ -1,5 +1,5 @@
-// SplitMix64 against its known answers, and what the draws
-// promise: uniform, open at both ends, and the same in whatever order individuals are made.
+// SplitMix64 compared with its known sequence, and the promised properties of draws: uniform, open
+// at both ends, and the same in any order of individuals.
 
 #include <algorithm>
 #include <cstdint>
@@ -30,7 +30,7 @@ double chi_square(const std::vector<int>& counts) {
 }
 
 CHECK_CASE("random: SplitMix64 gives its known sequence") {
-  // Of seed 1234567, as other implementations print it.
+  // The sequence of seed 1234567, as other implementations print it.
   std::uint64_t state = 1234567;
   for (const std::uint64_t expected :
        {6457827717110365317ULL, 3203168211198807973ULL, 9817491932198370423ULL,
@@ -51,7 +51,7 @@ CHECK_CASE("random: a draw is the key's sequence at (individual, draw)") {
   }
 }
 
-CHECK_CASE("random: uniform draws stay off 0 and 1") {
+CHECK_CASE("random: uniform draws never reach 0 and 1") {
   CHECK(base::unit_interval(0) > 0.0);
   CHECK(base::unit_interval((std::uint64_t{1} << 53U) - 1) < 1.0);
   CHECK_CLOSE(base::unit_interval(std::uint64_t{1} << 52U), 0.5, 1e-15);
@@ -91,7 +91,7 @@ CHECK_CASE("random: integers below a count are uniform and below it") {
 }
 
 CHECK_CASE("random: first draws over individuals and generations are uniform, too") {
-  // How the genetic search uses it: few draws from each of very many starts.
+  // The use of the genetic search: few draws from each of very many starts.
   std::vector<int> individuals(256, 0);
   std::vector<int> generations(256, 0);
   std::vector<int> seeds(256, 0);

@@ -1,4 +1,4 @@
-// Order statistics against a sort: values in any order, many of them equal, few and many.
+// Order statistics compared with a sort: values in any order, many of them equal, few and many.
 
 #include "base/ranks.hpp"
 
@@ -20,11 +20,11 @@ void compare(const std::vector<double>& values, std::size_t rank) {
   CHECK(found.next == sorted[std::min(rank + 1, sorted.size() - 1)]);
 }
 
-CHECK_CASE("ranks: as a sort has them") {
+CHECK_CASE("ranks: the same as from a sort") {
   base::Random draw(5, 0, 0, 0);
   for (int trial = 0; trial < 3000; ++trial) {
     const auto count = 1 + static_cast<std::size_t>(draw.uniform() * (trial % 3 == 0 ? 30 : 900));
-    // Of few different values most are equal; of one, all.
+    // With few different values most are equal; with one, all.
     const double kinds = trial % 2 == 0 ? 1e9 : 1.0 + draw.uniform() * 20.0;
     std::vector<double> values(count);
     for (double& value : values) value = std::floor(draw.uniform() * kinds) - 0.5 * kinds;
@@ -34,7 +34,7 @@ CHECK_CASE("ranks: as a sort has them") {
   }
 }
 
-CHECK_CASE("ranks: values in order, and orders that no pivot divides well") {
+CHECK_CASE("ranks: sorted values, and orders that no pivot divides well") {
   std::vector<double> values(1000);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i);
   for (const std::size_t rank : {std::size_t{0}, std::size_t{499}, std::size_t{999}}) {
@@ -42,8 +42,8 @@ CHECK_CASE("ranks: values in order, and orders that no pivot divides well") {
   }
   std::reverse(values.begin(), values.end());
   compare(values, 250);
-  // Two of the three places that a pivot is taken from hold the smallest values, round after round:
-  // each round leaves out two values. A partition turns round what lies above the pivot.
+  // Two of the three places of a pivot hold the smallest values in every round, so each round
+  // removes only two values. A partition reverses the values above the pivot.
   std::vector<std::size_t> left(400);
   for (std::size_t i = 0; i < left.size(); ++i) left[i] = i;
   std::vector<double> poor(left.size());

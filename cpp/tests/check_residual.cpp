@@ -1,4 +1,4 @@
-// A balance's residual without columns, against the residual of its columns.
+// A balance's residual without columns, compared with the residual from its columns.
 
 #include <memory>
 #include <vector>
@@ -54,7 +54,7 @@ double apart(const std::vector<std::string>& terms, Hold hold, Residual residual
 
 }  // namespace
 
-CHECK_CASE("residual: without columns the same as with them, of each kind of term") {
+CHECK_CASE("residual: the same without columns as with them, for each kind of term") {
   const std::vector<std::vector<std::string>> balances{
       {"inertia", "coulomb", "static", "viscous", "sensor_gain", "sensor_offset"},
       {"inertia", "coulomb", "static_general", "viscous", "torque_offset"},

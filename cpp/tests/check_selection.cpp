@@ -1,4 +1,4 @@
-// Who is selected how often, fitness, diversity, and what the probabilities do with it.
+// Frequency of selection, fitness, diversity, and its effect on the probabilities.
 
 #include <cmath>
 #include <limits>
@@ -29,7 +29,7 @@ Eigen::VectorXd of(std::initializer_list<double> values) {
   return result;
 }
 
-/// How often each individual was drawn against how often it should be: within four standard
+/// Compares how often each individual was drawn with the expected number: within four standard
 /// deviations.
 void check_shares(const GaOptions& options, const Eigen::VectorXd& penalties,
                   const Eigen::VectorXd& expected, const std::string& what) {
@@ -53,7 +53,7 @@ CHECK_CASE("selection: a tournament of k takes the best with 1 - ((n-1)/n)^k, an
   for (const int size : {1, 2, 3, 5}) {
     GaOptions options;
     options.tournament = size;
-    // Rank r wins when all k draws are at least r, less when all are beyond it.
+    // Rank r wins if all k draws are at least r, minus the cases in which all are beyond it.
     const Eigen::VectorXd expected = kRanks.unaryExpr([&](double rank) {
       return std::pow((5.0 - rank) / 5.0, size) - std::pow((4.0 - rank) / 5.0, size);
     });
@@ -105,8 +105,8 @@ CHECK_CASE("selection: infinite penalties never become parents, zero ones share"
   check_shares(options, of({-1.0, 1.0, 0.0, 5.0}), of({0.5, 0, 0.5, 0}), "negative");
 }
 
-CHECK_CASE("selection: 1/P^2 selects far harder than sum - P") {
-  // The pressure (expected copies of the best) on a population of which one is ten times better.
+CHECK_CASE("selection: 1/P^2 selects much harder than sum - P") {
+  // The pressure (expected copies of the best) on a population in which one is ten times better.
   Eigen::VectorXd penalties = Eigen::VectorXd::Constant(100, 10.0);
   penalties[17] = 1.0;
   const auto pressure = [&](Fitness fitness) {
@@ -118,13 +118,14 @@ CHECK_CASE("selection: 1/P^2 selects far harder than sum - P") {
   CHECK(pressure(Fitness::sum_minus) < 1.01);
 }
 
-CHECK_CASE("selection: the diversity measures are what they say") {
+CHECK_CASE("selection: the diversity measures equal their formulas") {
   GaOptions options;
   CHECK_CLOSE(diversity_of(options, kPenalties), 1.0 / 4.2, 1e-15);
   options.diversity = Diversity::fitness;
   CHECK_CLOSE(diversity_of(options, kPenalties), (1.0 / 9.0 + 1.0 + 0.01 + 0.25 + 0.04) / 5.0,
               1e-15);
-  options.fitness = Fitness::sum_minus;  // the reason for the listing's own measure: never low
+  options.fitness =
+      Fitness::sum_minus;  // the reason for the listing's own measure: this one is never low
   CHECK_CLOSE(diversity_of(options, kPenalties), 4.0 * 4.2 / 20.0, 1e-15);
   for (const auto diversity : {Diversity::penalty, Diversity::fitness}) {
     for (const auto fitness : {Fitness::inverse_square, Fitness::sum_minus}) {

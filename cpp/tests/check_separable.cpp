@@ -1,4 +1,5 @@
-// Elimination of the linear parameters: against known parameters and against an exhaustive search.
+// Elimination of the linear parameters, compared with known parameters and with an exhaustive
+// search.
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -24,7 +25,7 @@ using Names = std::vector<std::string>;
 const Names kStribeck{"coulomb", "static", "viscous", "sensor_gain", "sensor_offset"};
 const Names kCoulomb{"inertia", "coulomb", "viscous", "sensor_gain", "sensor_offset"};
 
-/// Without inertia: the command that remains after it, as for a joint whose inertia is known.
+/// Without inertia: the command that remains, as for a joint with a known inertia.
 Penalty stribeck_penalty(Truth truth, Residual residual, double noise) {
   truth.inertia = 0.0;
   auto r = moving(2000, 0.001, true, 4);
@@ -50,15 +51,15 @@ Domain around(const Eigen::VectorXd& truth) {
   return {truth - reach, truth + reach};
 }
 
-/// The penalty's minimum over the coefficients for given shapes: exhaustive over the bounds, golden
-/// sections over 1/gain when the residual divides by it.
+/// The penalty's minimum over the coefficients for these shapes: exhaustive over the bounds, with
+/// golden sections over 1/gain if the residual is divided by it.
 Eigen::VectorXd exhaustive(const Penalty& penalty, const Eigen::VectorXd& shapes,
                            const Domain& domain) {
   Eigen::MatrixXd columns;
   penalty.columns(shapes, columns);
   const Eigen::Index p = penalty.coefficients();
   const Eigen::Index gain = penalty.gain_index();
-  // Rows are many, columns few: reduce to a square problem first.
+  // Many rows, few columns: reduced to a square problem first.
   Eigen::MatrixXd all(columns.rows(), p + 1);
   all << columns, penalty.target();
   const Eigen::MatrixXd r =
@@ -142,7 +143,7 @@ CHECK_CASE("separable: recovers the truth with one shape, positive and negative 
   }
 }
 
-CHECK_CASE("separable: bounds that hold, against the exhaustive search") {
+CHECK_CASE("separable: active bounds, compared with the exhaustive search") {
   base::Random random(6, 0, 0, 0);
   for (int trial = 0; trial < 30; ++trial) {
     Truth truth;
@@ -150,7 +151,7 @@ CHECK_CASE("separable: bounds that hold, against the exhaustive search") {
     const auto theta = vector({truth.coulomb, truth.static_excess, truth.viscous, truth.sensor_gain,
                                truth.sensor_offset});
     auto domain = around(theta);
-    for (Eigen::Index i = 0; i < 5; ++i) {  // each side of the box may cut the truth off
+    for (Eigen::Index i = 0; i < 5; ++i) {  // each side of the box may exclude the truth
       const double width = domain.upper[i] - domain.lower[i];
       const double cut = random.uniform();
       if (cut < 0.25) domain.upper[i] = theta[i] - width * (0.05 + 0.1 * random.uniform());
@@ -173,7 +174,7 @@ CHECK_CASE("separable: a sensor that reads raw counts") {
   add_torque(r, truth, true, 1e6);
   add_noise(r, 1.0, 7);
   auto domain = around(theta);
-  domain.upper[0] = 20.0;  // bounds hold
+  domain.upper[0] = 20.0;  // bounds are active
   domain.lower[4] = -2.0;
   domain.upper[4] = 10.0;
   for (const auto residual : {Residual::torque, Residual::sensor}) {
@@ -182,7 +183,7 @@ CHECK_CASE("separable: a sensor that reads raw counts") {
   }
 }
 
-CHECK_CASE("separable: fixed parameters stay, the others are the best beside them") {
+CHECK_CASE("separable: fixed parameters stay, the others are the best for them") {
   const Truth truth;
   const auto theta = vector({truth.coulomb, truth.static_excess, truth.viscous, truth.sensor_gain,
                              truth.sensor_offset, truth.stribeck});
@@ -228,7 +229,7 @@ CHECK_CASE("separable: the same bits for any number of threads") {
   }
 }
 
-CHECK_CASE("separable: what cannot be is refused by name") {
+CHECK_CASE("separable: impossible domains are refused with a name") {
   base::Pool pool(2);
   const auto sensor = stribeck_penalty({}, Residual::sensor, 0.0);
   Domain domain{vector({0, 0, 0, -0.1, -30, 0}), vector({50, 40, 40, 5, 30, 200})};

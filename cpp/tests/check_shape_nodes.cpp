@@ -1,4 +1,4 @@
-// The nodes of the compressed penalty: for which models and bounds there are any, and how many.
+// The nodes of the compressed penalty: the models and bounds that have nodes, and their number.
 
 #include <array>
 #include <cmath>
@@ -70,8 +70,8 @@ CHECK_CASE("compressed: a velocity from 0 on has no nodes") {
   CHECK_WITH(some.exact(), some.reason());
 }
 
-CHECK_CASE("shape nodes: with a fixed exponent the usual number of them suffices") {
-  // The sliding penalty takes no second, denser attempt.
+CHECK_CASE("shape nodes: with a fixed exponent the usual number of nodes suffices") {
+  // The sliding penalty makes no second, denser attempt.
   const auto r = recorded({}, 0.5);
   const auto penalty = penalty_of(kGeneral);
   for (const double exponent : {0.5, 2.0, 6.0}) {
@@ -85,8 +85,8 @@ CHECK_CASE("shape nodes: with a fixed exponent the usual number of them suffices
   }
 }
 
-CHECK_CASE("compressed: never negative where a shaped term is another one again") {
-  // Without decay the static column is Coulomb's: nothing of it is left beside that.
+CHECK_CASE("compressed: never negative where a shaped term equals another term") {
+  // Without decay the static column is Coulomb's, so nothing of it remains.
   base::Pool pool(1);
   Truth truth;
   truth.static_excess = 0.0;

@@ -1,4 +1,5 @@
-// Delays of signals: window means, the shift of a balance, noise that one signal repeats.
+// Delays of signals: window means, the shift of a balance, noise of one signal that another
+// repeats.
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
@@ -41,7 +42,7 @@ double motion(double t, Index column) {
   return column == 1 ? base::sin(23.0 * t) : 1.0;
 }
 
-/// A signal that is late, its windows and the columns that it is a sum of.
+/// A late signal, its windows and the columns that make its sum.
 struct Late {
   VectorXd time = VectorXd::LinSpaced(kSamples, 0.0, kSampling*(kSamples - 1));
   VectorXd signal = VectorXd(kSamples);
@@ -71,7 +72,7 @@ struct Late {
   }
 };
 
-CHECK_CASE("shift: a late signal's delay is found, whole, in parts, and from afar") {
+CHECK_CASE("shift: a late signal's delay is found, whole, in parts, and from a distant start") {
   for (const double delay : {0.0, 2.3e-4, -1.7e-3}) {
     const Late late(delay);
     const auto found = signals::fit_shift(late.rows(), {0.0, true, 0.0}, nullptr);
@@ -86,7 +87,7 @@ CHECK_CASE("shift: a late signal's delay is found, whole, in parts, and from afa
   }
 }
 
-CHECK_CASE("shift: the leading coefficient is that of the columns; too few rows say nothing") {
+CHECK_CASE("shift: the leading coefficient is that of the columns; too few rows give nothing") {
   Late late(0.0);
   CHECK_CLOSE(signals::leading_coefficient(late.rows()), 2.0, 1e-3);
   const auto found = signals::fit_shift(late.rows(), {0.0, true, 0.0}, nullptr);
@@ -134,7 +135,7 @@ CHECK_CASE("shift: windows keep clear of unusable samples and changes of directi
   CHECK_REFUSED(signals::smooth_windows(late.stretch(), {kHalf, 3, 0, true}), "beyond its stretch");
 }
 
-CHECK_CASE("shift: columns are the means of what friction may be; a jump is half of it earlier") {
+CHECK_CASE("shift: columns are the means of possible friction; half of a jump is earlier") {
   const Late late(0.0);
   const auto& windows = late.windows;
   const VectorXd cosine = late.time.array().cos();
@@ -168,7 +169,7 @@ CHECK_CASE("shift: columns are the means of what friction may be; a jump is half
   CHECK_CLOSE((found - earlier).rightCols(24).cwiseAbs().maxCoeff(), 0.0, 0.0);
 }
 
-CHECK_CASE("shift: windows are as long as the noise of the acceleration asks for") {
+CHECK_CASE("shift: windows are as long as the noise of the acceleration requires") {
   VectorXd signal(kSamples);
   for (Index i = 0; i < kSamples; ++i) signal[i] = motion(kSampling * static_cast<double>(i), 1);
   CHECK(signals::half_length(view(signal), kSampling, false) == 6);
@@ -183,7 +184,7 @@ CHECK_CASE("shift: windows are as long as the noise of the acceleration asks for
   CHECK(signals::half_length(view(signal), kSampling, true) > noisy);
 }
 
-CHECK_CASE("noise: what a torque repeats two samples earlier shows at that lag") {
+CHECK_CASE("noise: noise that a torque repeats two samples earlier shows at that lag") {
   std::uint64_t state = 7;
   VectorXd noise(kSamples);
   for (auto& one : noise) {
@@ -213,7 +214,7 @@ CHECK_CASE("noise: what a torque repeats two samples earlier shows at that lag")
   CHECK(!signals::repeated_noise({{view(noise), view(late)}}).has_value());
 }
 
-CHECK_CASE("circle: the bits of one angle after the other, of any size") {
+CHECK_CASE("circle: the bits of one angle after the other, for any number of angles") {
   for (const double scale : {1.0, 3e7}) {
     const VectorXd angle = scale * VectorXd::LinSpaced(101, -40.0, 41.0);
     VectorXd cosine(101);
@@ -230,10 +231,10 @@ CHECK_CASE("segments: the sandwich of scores that are corrected for the freedom 
       50, 3, [](Index i, Index j) { return std::sin(static_cast<double>(i * (j + 2))); });
   const VectorXd residual = jacobian.col(0) + 0.5 * jacobian.col(2);
   struct Regime {
-    double scale, from, to;  // of the largest share of a direction that a segment holds
+    double scale, from, to;  // largest share of a direction in one segment
   };
-  // Small shares are corrected by a series, larger ones by eigenvalues; of a direction that a
-  // segment determines alone a twentieth is taken to be left.
+  // Small shares are corrected by a series, larger ones by eigenvalues. For a direction that one
+  // segment determines alone, a twentieth is assumed to remain.
   for (const auto& [scale, from, to] :
        {Regime{0.05, 0.1, 0.3}, Regime{0.09, 0.6, 0.9}, Regime{0.2, 2.0, 5.0}}) {
     MatrixXd whitening(2, 3);
@@ -269,7 +270,7 @@ CHECK_CASE("segments: the sandwich of scores that are corrected for the freedom 
     CHECK(std::fabs(found.size - size) < 1e-12 * size);
     CHECK((found.freedom - even.cwiseInverse()).norm() < 1e-9);
     CHECK(std::fabs(found.pooled_freedom - 4.0 / squares) < 1e-9 * found.pooled_freedom);
-    // Of rows alone nothing is corrected.
+    // Single rows are not corrected.
     const VectorXd alone = identify::variances_of_rows(rows, residual, whitening);
     const MatrixXd effects = residual.asDiagonal() * (rows * whitening);
     CHECK((alone - effects.colwise().squaredNorm().transpose()).norm() < 1e-12 * alone.norm());

@@ -1,5 +1,5 @@
-// What a signal shows against counts one sample after the other: blocks, their ends, sizes beyond
-// numbers. The same source counts pairs where no function has clones.
+// Facts about a signal, compared with counts one sample after the other: blocks, their ends,
+// infinite sizes. The same source counts pairs where no function has clones.
 
 #include "diagnose/signal_facts.hpp"
 
@@ -61,7 +61,7 @@ void compare(const std::vector<double>& x, const std::vector<double>& v) {
   CHECK(facts.fine == expected.fine);
 }
 
-CHECK_CASE("signal facts: as counted one sample after the other, of any length") {
+CHECK_CASE("signal facts: as counted one sample after the other, at any length") {
   base::Random draw(7, 0, 0, 0);
   for (int trial = 0; trial < 600; ++trial) {
     const auto count = 2 + static_cast<std::size_t>(trial % 90);
@@ -74,7 +74,7 @@ CHECK_CASE("signal facts: as counted one sample after the other, of any length")
   }
 }
 
-CHECK_CASE("signal facts: steps that are no numbers are not fine") {
+CHECK_CASE("signal facts: NaN steps are not fine") {
   constexpr double kLargest = std::numeric_limits<double>::max();
   for (const std::size_t count : {std::size_t{6}, std::size_t{9}, std::size_t{33}}) {
     std::vector<double> x(count);

@@ -1,5 +1,5 @@
 // Closed loops: lanes and threads change no bit, noise is a function of the seed, Ctrl-C ends a
-// long run, and what cannot be simulated is refused.
+// long run, and impossible settings are refused.
 
 #include "simulate/simulator.hpp"
 
@@ -134,7 +134,7 @@ CHECK_CASE("simulator: an unstable loop is reported, not returned") {
   CHECK(contains(message, "not stable"));
 }
 
-CHECK_CASE("simulator: what cannot be simulated is refused by name") {
+CHECK_CASE("simulator: impossible settings are refused with their name") {
   base::Pool pool(1);
   const auto trajectory = thesis_trajectory(60.0, 0.5, 0.4);
   const auto tried = [&](auto change) {

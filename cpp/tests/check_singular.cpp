@@ -26,7 +26,7 @@ CHECK_CASE("singular: values and directions give the products of the columns") {
     const Eigen::VectorXd sizes = matrix.colwise().norm();
     const Eigen::MatrixXd apart = products - matrix.transpose() * matrix;
     for (Eigen::Index i = 0; i < columns; ++i) {
-      // The error of a product is small beside the largest column and that of the smaller one.
+      // The error of a product is small compared with the product of the two columns' sizes.
       CHECK(std::fabs(apart(i, i)) < 1e-14 * sizes[i] * sizes.maxCoeff());
       if (i > 0) CHECK(found.values[i] <= found.values[i - 1]);
     }
@@ -35,8 +35,9 @@ CHECK_CASE("singular: values and directions give the products of the columns") {
   }
 }
 
-CHECK_CASE("singular: a small value beside large ones is known to full accuracy") {
-  // Columns of unlike size, 1e-9 from being one: the smallest value is that of their difference.
+CHECK_CASE("singular: a small value among large ones is known to full accuracy") {
+  // Columns of very different size, 1e-9 from being parallel: the smallest value is that of their
+  // difference.
   Eigen::MatrixXd matrix(2, 2);
   matrix << 1.0, 1e-6, 0.0, 1e-15;
   const auto found = base::singular(matrix);
@@ -44,7 +45,7 @@ CHECK_CASE("singular: a small value beside large ones is known to full accuracy"
   CHECK_CLOSE(found.values[0], 1.0, 1e-9);
 }
 
-CHECK_CASE("singular: columns that are one, that are zero, and more columns than rows") {
+CHECK_CASE("singular: equal columns, zero columns, and more columns than rows") {
   Eigen::MatrixXd matrix = uneven(6, 4);
   matrix.col(1) = 2.0 * matrix.col(0);
   matrix.col(2).setZero();

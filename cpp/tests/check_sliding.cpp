@@ -59,7 +59,7 @@ CHECK_CASE("sliding: stretches add up to the penalty over the same windows") {
   CHECK(jacobian.rows() == whole.window_count() && jacobian.cols() == 7);
 }
 
-CHECK_CASE("sliding: what is forgotten does not count any more") {
+CHECK_CASE("sliding: forgotten stretches no longer count") {
   const auto r = recorded(4001);
   auto parts = sliding(r);
   auto late = sliding(r);
@@ -75,7 +75,7 @@ CHECK_CASE("sliding: what is forgotten does not count any more") {
   CHECK(parts.stretches() == 0 && !parts.compressed().has_value());
 }
 
-CHECK_CASE("sliding: context tells a stretch's end whether the joint stands still") {
+CHECK_CASE("sliding: context shows whether the joint stands still at a stretch's end") {
   auto r = recorded(2001);
   for (Eigen::Index k = 900; k < 1200; ++k) {
     r.velocity[k] = 0.0;

@@ -47,7 +47,7 @@ CHECK_CASE("terms: the general decay and its derivatives are those of long doubl
       const auto slope = [&](int which) {
         return model::basis_slope(SpeedBasis::general, speed, shapes, which);
       };
-      // Of 1, which the samples at rest have.
+      // Relative to 1, which the samples at rest have.
       CHECK_CLOSE(model::basis_value(SpeedBasis::general, speed, shapes),
                   static_cast<double>(value), 2e-15 * std::max(1.0, 0.5 * d));
       CHECK_CLOSE(slope(0), static_cast<double>(value * power * d / velocity),
@@ -61,7 +61,7 @@ CHECK_CASE("terms: the general decay and its derivatives are those of long doubl
     CHECK_CLOSE(model::basis_slope(SpeedBasis::general, speed, shapes, 0), 0.0, 1e-200);
     CHECK_CLOSE(model::basis_slope(SpeedBasis::general, speed, shapes, 1), 0.0, 1e-200);
   }
-  const double sudden[] = {1e-6, 4.0};  // the power is beyond all numbers
+  const double sudden[] = {1e-6, 4.0};  // the power overflows
   CHECK_CLOSE(model::basis_value(SpeedBasis::general, 1e6, sudden), 0.0, 1e-200);
   CHECK_CLOSE(model::basis_slope(SpeedBasis::general, 1e6, sudden, 1), 0.0, 1e-200);
 }
@@ -82,9 +82,10 @@ CHECK_CASE("terms: the rise is a hyperbolic tangent, and its derivatives are its
   }
 }
 
-// The rows below are read from the table, so that a new row is checked without a line here.
+// The rows below are read from the table, so a new row is checked automatically.
 
-CHECK_CASE("terms: every row says what it is, which motion determines it and what adds it") {
+CHECK_CASE(
+    "terms: every row has a meaning, a motion that determines it, and an option that adds it") {
   std::set<std::string> keys;
   for (const auto& term : identify::term_table()) {
     CHECK_WITH(keys.insert(term.key).second, term.key + " is there twice");
@@ -106,7 +107,7 @@ CHECK_CASE("terms: capabilities are refused by default") {
   CHECK(bare.control == identify::Control::refused);
 }
 
-CHECK_CASE("terms: the terms of every model exist for both directions apart") {
+CHECK_CASE("terms: the terms of every model exist for both directions separately") {
   for (const auto& model : identify::model_table()) {
     CHECK(identify::model_terms(model.name, false) == model.terms);
     const auto apart = identify::model_terms(model.name, true);

@@ -1,4 +1,5 @@
-// Many searches side by side: each as alone, for any number of threads, and ended by the poll.
+// Many searches in parallel: each gives the same as alone, for any number of threads, and the poll
+// ends them.
 
 #include <cmath>
 #include <stdexcept>
@@ -13,7 +14,7 @@ using namespace jointid;
 using search::GaOptions;
 using search::Trial;
 
-// Slow enough by count, with valleys, and evaluated by the pool as the direct sum is.
+// Slow enough by count, with valleys, and evaluated by the pool like the direct sum.
 const search::Objective rippled = [](const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                                      base::Pool& pool) {
   penalties.resize(candidates.cols());
@@ -66,7 +67,7 @@ CHECK_CASE("trials: each is the search alone, for 1, 2 and 7 threads") {
   }
 }
 
-CHECK_CASE("trials: none are no work, and bad options are refused before it") {
+CHECK_CASE("trials: none are no work, and bad options are refused first") {
   base::Pool pool(2);
   CHECK(search::minimise_trials(rippled, cube(), {}, search::Searcher::genetic, pool).empty());
   auto bad = trials();
@@ -75,7 +76,7 @@ CHECK_CASE("trials: none are no work, and bad options are refused before it") {
                 "population");
 }
 
-CHECK_CASE("trials: what the poll throws ends all of them") {
+CHECK_CASE("trials: an exception of the poll ends all of them") {
   struct Enough {};
   auto endless = trials();
   for (auto& trial : endless) {

@@ -1,4 +1,5 @@
-// Refinement of a start over a single shape: also where a scan over the domain cannot see it.
+// Refinement of a start over a single shape, also where a scan over the domain cannot see the
+// minimum.
 
 #include <cmath>
 #include <string>
@@ -11,8 +12,8 @@
 namespace jointid::tests {
 namespace {
 
-/// A penalty of one shape alone: a wide valley of depth 1, one of depth 0.6 far from it, and in the
-/// floor of the second a cleft of depth 1, too narrow for the scan.
+/// A penalty of only one shape: a wide valley of depth 1, and far from it one of depth 0.6. The
+/// floor of the second has a gap of depth 1 that is too narrow for the scan.
 class Valleys : public identify::PenaltyFunction {
  public:
   explicit Valleys(bool mirrored) : mirrored_(mirrored) {}
@@ -84,7 +85,7 @@ CHECK_CASE("separable: a start's own valley counts, also one that the scan steps
   }
 }
 
-CHECK_CASE("separable: a root's scale needs bounds of at least 0, else its steps are even") {
+CHECK_CASE("separable: a root's scale needs bounds of at least 0, otherwise its steps are even") {
   const identify::Scale root(1.0, 9.0, true);
   CHECK(root.is_root() && root.at(0.5) == 4.0 && root.share(4.0) == 0.5);
   const identify::Scale even(-1.0, 9.0, true);

@@ -1,4 +1,4 @@
-// Minima over halved and over joined windows, against searches over windows that are cut anew.
+// Minima over halved and over joined windows, compared with searches over newly cut windows.
 
 #include <cmath>
 #include <memory>
@@ -22,7 +22,7 @@ using identify::Residual;
 const std::vector<std::string> kTerms{"inertia", "coulomb",     "static",
                                       "viscous", "sensor_gain", "sensor_offset"};
 
-/// A joint with a link on the sensor, whose friction rises with time as no model has it.
+/// A joint with a link on the sensor. Its friction rises with time, which no model includes.
 Recording drifting() {
   constexpr int kSamples = 12000;
   const Truth truth;
@@ -52,7 +52,7 @@ std::shared_ptr<const identify::MaskedRecording> masked(const Recording& recordi
       recording, identify::usable_intervals(recording, true));
 }
 
-CHECK_CASE("window shifts: as by windows that are cut anew, whatever the threads") {
+CHECK_CASE("window shifts: as with newly cut windows, for any number of threads") {
   const Recording recording = drifting();
   const auto run = masked(recording);
   // An even number of windows, so that both others nest.

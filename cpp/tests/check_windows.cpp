@@ -1,4 +1,4 @@
-// What of a recording may be used (the mask), and how it is cut into windows.
+// The usable parts of a recording (the mask), and its division into windows.
 
 #include <algorithm>
 #include <cmath>
@@ -54,12 +54,12 @@ bool masks_exactly(const std::vector<std::uint8_t>& usable, std::int64_t first, 
   return true;
 }
 
-CHECK_CASE("windows: a moving joint is used throughout, plain reversals too") {
+CHECK_CASE("windows: a moving joint is used throughout, plain reversals included") {
   const auto all = usable_intervals(swinging(), true);
   CHECK(all.standing == 0);
   CHECK_CLOSE(unusable(all.usable), 0, 0.0);
-  // The same seen by an encoder: at each of the four reversals its count stands for up to 9 ms,
-  // which looks the same as sticking; no more than that may be lost.
+  // The same from an encoder: at each of the four reversals its count is constant for up to 9 ms,
+  // which looks like sticking. No more than that may be lost.
   for (const double quantum : {1e-6, 7.8e-6, 1e-4}) {
     Recording r = swinging();
     r.position = (r.position / quantum).array().round() * quantum;
@@ -67,7 +67,7 @@ CHECK_CASE("windows: a moving joint is used throughout, plain reversals too") {
   }
 }
 
-CHECK_CASE("windows: a run that sticks is left out, with two intervals either side") {
+CHECK_CASE("windows: a run that sticks is left out, with two intervals on either side") {
   const double stop = 0.9005;
   const double go = 1.1995;
   const auto r = driven(3000, [&](double t) {
@@ -85,7 +85,7 @@ CHECK_CASE("windows: a run that sticks is left out, with two intervals either si
 CHECK_CASE("windows: a velocity of exactly zero sticks even if the position is noisy") {
   auto r = driven(3000, [](double t) { return t > 1.0005 && t < 1.2 ? 0.0 : 2.0 + std::sin(t); });
   base::Random random(3, 0, 0, 0);
-  r.velocity[100] = 1e-4;  // the velocity resolves finely: zero is zero
+  r.velocity[100] = 1e-4;  // the velocity has a fine resolution: zero is zero
   for (Eigen::Index k = 0; k < 3000; ++k) r.position[k] += 1e-4 * random.uniform();
   const auto mask = usable_intervals(r, true);
   CHECK(masks_exactly(mask.usable, 1001, 1199, 2));
@@ -130,7 +130,7 @@ CHECK_CASE("windows: a gap is unusable and no window crosses it") {
   }
 }
 
-CHECK_CASE("windows: a doubtful interval is unusable, and windows go on beside it") {
+CHECK_CASE("windows: a doubtful interval is unusable, and windows continue after it") {
   auto r = swinging(1000);
   auto view = identify::RecordingView(r);
   view.doubtful = {500};
@@ -156,7 +156,8 @@ CHECK_CASE("windows: a doubtful interval is unusable, and windows go on beside i
 
 CHECK_CASE("windows: a gap that ends where it began is not a standstill") {
   auto r = swinging(3000);
-  // The joint passes a place, the record breaks off, and goes on at the same place a period later.
+  // The joint passes a place, the recording has a gap, and it continues at the same place a period
+  // later.
   r.gap_after = {1499};
   r.time.tail(1500).array() += 0.5;
   r.position.tail(1500).array() += r.position[1499] - r.position[1500];
@@ -164,7 +165,7 @@ CHECK_CASE("windows: a gap that ends where it began is not a standstill") {
   CHECK_CLOSE(unusable(usable), 1, 0.0);
 }
 
-CHECK_CASE("windows: as many as asked for, as long as asked for") {
+CHECK_CASE("windows: the requested number, or the requested length") {
   const auto r = swinging(3001);  // 3 s
   const auto usable = usable_intervals(r, true).usable;
   for (const std::int64_t count : {1, 7, 50, 333, 1500, 3000}) {
@@ -190,7 +191,7 @@ CHECK_CASE("windows: one without a usable interval is left out") {
     const auto last = usable.begin() + window.end;
     CHECK(std::any_of(first, last, [](std::uint8_t flag) { return flag != 0; }));
   }
-  // 60 windows of 0.05 s, of which the standing second takes 19 or 20 whole ones.
+  // 60 windows of 0.05 s; the second of standing still takes 19 or 20 whole ones.
   CHECK_CLOSE(windows.size(), 40.5, 1.0);
 }
 
@@ -209,7 +210,7 @@ CHECK_CASE("windows: the duration follows the noise of the velocity") {
     const auto choice = identify::choose_window(noisy, usable, 4);
     CHECK_WITH(choice.duration >= previous, std::to_string(choice.duration));
     previous = choice.duration;
-    // The noise's part of D(lag) is twice its variance; its share is what is reported.
+    // The noise adds twice its variance to D(lag); its share is reported.
     const auto lag = static_cast<Eigen::Index>(std::lround(choice.duration / kPeriod));
     const double change =
         (noisy.velocity.tail(8000 - lag) - noisy.velocity.head(8000 - lag)).squaredNorm() /
@@ -223,10 +224,11 @@ CHECK_CASE("windows: the duration follows the noise of the velocity") {
   for (double& v : hopeless.velocity) v += 10.0 * random.uniform();
   const auto limited = identify::choose_window(hopeless, usable, 4);
   CHECK(limited.noise_limited);
-  CHECK_CLOSE(limited.duration, 7999 / 80 * kPeriod, 1e-9);  // 20 windows a parameter are kept
+  CHECK_CLOSE(limited.duration, 7999 / 80 * kPeriod,
+              1e-9);  // at least 20 windows per parameter are kept
 }
 
-CHECK_CASE("windows: the shortest whose noise is a thousandth; a hundredth is named") {
+CHECK_CASE("windows: the shortest with a noise of a thousandth; a hundredth is reported") {
   auto noisy = swinging(8000);
   base::Random random(5, 0, 0, 0);
   for (double& v : noisy.velocity) v += 0.01 * (2.0 * random.uniform() - 1.0);
@@ -250,7 +252,7 @@ CHECK_CASE("windows: the shortest whose noise is a thousandth; a hundredth is na
   CHECK(silent > 0);
 }
 
-CHECK_CASE("windows: what cannot be is refused in words") {
+CHECK_CASE("windows: impossible settings are refused in words") {
   CHECK_REFUSED((identify::WindowOptions{-1, 0.0}.validate()),
                 "windows.count is -1: must be positive");
   CHECK_REFUSED((identify::WindowOptions{0, -0.5}.validate()),

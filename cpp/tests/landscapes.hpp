@@ -51,7 +51,7 @@ inline search::GaResult search_for(Function function, const search::Domain& doma
   return search::minimise_genetic(each(function), domain, options, seed, trial, pool, {});
 }
 
-/// Best, penalty and the whole history, bit by bit.
+/// Whether best, penalty and the whole history agree bit by bit.
 inline bool same_run(const search::GaResult& a, const search::GaResult& b) {
   bool same = a.best == b.best && a.penalty == b.penalty && a.evaluations == b.evaluations &&
               a.stop == b.stop && a.history.size() == b.history.size();

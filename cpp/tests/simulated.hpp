@@ -31,7 +31,7 @@ inline simulate::Setup thesis_setup(double angle = -kHalfPi) {
   return setup;
 }
 
-/// (6-1): amplitude in degrees, seconds a cycle.
+/// (6-1): amplitude in degrees, seconds per cycle.
 inline simulate::Trajectory thesis_trajectory(double degrees, double cycle, double duration) {
   const double size = degrees / 90.0 * kHalfPi / 1.3;
   const double rate = 4.0 * kHalfPi / cycle;

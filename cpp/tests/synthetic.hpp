@@ -1,7 +1,7 @@
 #pragma once
 // Recordings made from known parameters: piecewise linear velocity, and in each sample interval the
-// torque whose integral is the model's. The arithmetic is written down here a second time, plainly
-// and in long double, so that it checks the core's.
+// torque with the integral of the model. The arithmetic is written a second time, plainly and in
+// long double, so that it checks the core's.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -27,8 +27,8 @@ inline long double sign_of(long double v) {
   return v > 0 ? 1 : (v < 0 ? -1 : 0);
 }
 
-/// Integral of sgn v h(|v|) over one interval of linear velocity v0 to v1: trapezoid on the speed,
-/// cut at the reversal if there is one.
+/// Integral of sgn v h(|v|) over one interval of linear velocity v0 to v1: trapezoidal rule on the
+/// speed, divided at the reversal if there is one.
 template <class Speed>
 long double friction_over(long double v0, long double v1, long double step, Speed h) {
   if (v0 * v1 >= 0) return step * (sign_of(v0) * h(v0) + sign_of(v1) * h(v1)) / 2;
@@ -37,7 +37,7 @@ long double friction_over(long double v0, long double v1, long double step, Spee
          2;
 }
 
-/// Two sines, so that all columns differ; no sample stands still. Time steps vary when `jitter`.
+/// Two sines, so that all columns differ; no sample is at rest. Time steps vary with `jitter`.
 inline identify::Recording moving(int samples, double period, bool jitter, std::uint64_t seed) {
   identify::Recording r;
   r.time.resize(samples);
@@ -55,7 +55,7 @@ inline identify::Recording moving(int samples, double period, bool jitter, std::
   return r;
 }
 
-/// Fills torque (held) and sensor, in `units` a newton metre, such that the model holds in every
+/// Fills torque (held) and sensor (`units` per newton metre) such that the model holds in every
 /// interval.
 inline void add_torque(identify::Recording& r, const Truth& truth, bool with_sensor,
                        double units = 1.0) {
@@ -85,7 +85,7 @@ inline void add_torque(identify::Recording& r, const Truth& truth, bool with_sen
   }
 }
 
-/// Noise on the torque, uniform, to have a penalty that is not zero at the optimum.
+/// Adds uniform noise to the torque, so that the penalty is not zero at the optimum.
 inline void add_noise(identify::Recording& r, double amplitude, std::uint64_t seed) {
   base::Random random(seed, 1, 0, 0);
   for (double& value : r.torque) value += amplitude * (2.0 * random.uniform() - 1.0);

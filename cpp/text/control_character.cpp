@@ -7,7 +7,8 @@ namespace jointid::text {
 
 namespace {
 
-/// In bytes only, so that a vector takes many of them at once: 9 to 13 are tab and ends.
+/// In bytes only, so that a vector holds many of them. 9 to 13 are tab and the ends of lines and
+/// pages.
 std::uint8_t is_control(char sign) {
   const auto byte = static_cast<std::uint8_t>(sign);
   const auto from_tab = static_cast<std::uint8_t>(byte - 9U);

@@ -13,11 +13,11 @@ namespace {
 
 #if defined(__cpp_lib_to_chars)
 
-// Python writes no exponent for a first digit of 1e-4 up to, not including, 1e16.
+// Python writes no exponent for numbers from 1e-4 to below 1e16.
 constexpr int kLeast = -4;
 constexpr int kMost = 16;
 
-/// Appends a finite number whose digits and exponent are written as d.ddde-xx.
+/// Appends a finite number from its digits and exponent in the form d.ddde-xx.
 void append(std::string_view written, std::string& text) {
   if (written.front() == '-') {
     text += '-';
@@ -28,7 +28,7 @@ void append(std::string_view written, std::string& text) {
   if (*from == '+') ++from;
   int exponent = 0;
   std::from_chars(from, written.data() + written.size(), exponent);
-  if (exponent < kLeast || exponent >= kMost) {  // with two digits at least, as it is written
+  if (exponent < kLeast || exponent >= kMost) {  // with at least two digits, as Python writes it
     text += written;
     return;
   }

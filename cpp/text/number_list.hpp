@@ -1,6 +1,5 @@
 #pragma once
-// Numbers as text, written as Python writes them: the fewest digits that read back as the same
-// double.
+// Numbers as text in Python's notation: the fewest digits that read back as the same double.
 
 #include <optional>
 #include <span>
@@ -8,8 +7,8 @@
 
 namespace jointid::text {
 
-/// "[1.0, -2.5e-05]", as Python's json writes a list of floats. Nothing where a number is not
-/// finite, or where the standard library cannot write the shortest digits: Python does it then.
+/// "[1.0, -2.5e-05]", as Python's json writes a list of floats. Nothing if a number is not finite,
+/// or if the standard library cannot write the shortest digits: Python writes the list then.
 std::optional<std::string> number_list(std::span<const double> values);
 
 }  // namespace jointid::text

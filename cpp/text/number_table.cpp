@@ -14,7 +14,7 @@ namespace jointid::text {
 
 namespace {
 
-/// The next line without its end, which is taken from the text.
+/// The next line without its end, which is removed from the text.
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
   std::string_view line = text.substr(0, end);
@@ -28,25 +28,26 @@ bool starts_number(const char* at, const char* end) {
   return at != end && ((*at >= '0' && *at <= '9') || *at == '.');  // neither inf nor nan
 }
 
-/// What a digit is worth, more than 9 for everything else.
+/// Value of a digit; more than 9 for any other character.
 unsigned digit(char sign) {
   return static_cast<unsigned>(sign) - static_cast<unsigned>('0');
 }
 
-/// Takes up to eight digits from eight characters at once, without a branch that depends on how
-/// many there are: neighbours are joined to pairs, pairs to fours, fours to all of them (after D.
-/// Lemire, "Quickly parsing eight digits", 2018). Returns how many there were.
+/// Reads up to eight digits from eight characters at once, without a branch that depends on their
+/// number. Neighbours are joined to pairs, pairs to fours, fours to all eight (after D. Lemire,
+/// "Quickly parsing eight digits", 2018). Returns the number of digits.
 std::size_t take_some(const char* at, std::uint64_t& number) {
   constexpr std::array<std::uint64_t, 9> kPowers = {
       1, 10, 100, 1'000, 10'000, 100'000, 1'000'000, 10'000'000, 100'000'000};
   std::uint64_t signs = 0;
   std::memcpy(&signs, at, sizeof signs);
-  const std::uint64_t digits = signs ^ 0x3030303030303030U;  // 0 to 9, everything else is more
+  const std::uint64_t digits =
+      signs ^ 0x3030303030303030U;  // 0 to 9 for a digit, more for any other character
   const std::uint64_t others = ((digits + 0x7676767676767676U) | digits) & 0x8080808080808080U;
   const std::size_t count =
-      static_cast<std::size_t>(std::countr_zero(others)) / 8;  // 8 without one
+      static_cast<std::size_t>(std::countr_zero(others)) / 8;  // 8 if all are digits
   if (count == 0) return 0;
-  std::uint64_t value = digits << (8 * (8 - count));  // zeros before them
+  std::uint64_t value = digits << (8 * (8 - count));  // leading zeros
   value = value * 10 + (value >> 8U);
   constexpr std::uint64_t kPairs = 0x000000ff000000ffU;
   constexpr std::uint64_t kFirst = 100U + (1'000'000ULL << 32U);
@@ -56,7 +57,7 @@ std::size_t take_some(const char* at, std::uint64_t& number) {
   return count;
 }
 
-/// Appends the digits that follow to a number.
+/// Appends the following digits to a number.
 const char* take_digits(const char* at, const char* end, std::uint64_t& number) {
   if constexpr (std::endian::native == std::endian::little) {
     while (end - at >= 8) {
@@ -69,8 +70,8 @@ const char* take_digits(const char* at, const char* end, std::uint64_t& number) 
   return at;
 }
 
-/// Reads a short number such as -12.3456 exactly: digits that a double holds, divided by a power of
-/// ten that a double holds, is the nearest double. Null where it is longer, or has an exponent.
+/// Reads a short number such as -12.3456 exactly. Its digits and a power of ten both fit a double,
+/// so their quotient is the nearest double. Null if the number is longer, or has an exponent.
 const char* read_short(const char* at, const char* end, double& value) {
   constexpr std::array<double, 16> kPowers = {1e0, 1e1, 1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
                                               1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15};
@@ -87,7 +88,7 @@ const char* read_short(const char* at, const char* end, double& value) {
     decimals = at - point - 1;
     count += decimals;
   }
-  // Fifteen digits are below 2^53; of more, `digits` may have overflowed.
+  // Fifteen digits are below 2^53; with more, `digits` may have overflowed.
   if (count == 0 || count > 15 || (at != end && (*at == 'e' || *at == 'E'))) return nullptr;
   const double size = static_cast<double>(digits) / kPowers[static_cast<std::size_t>(decimals)];
   value = negative ? -size : size;
@@ -104,7 +105,7 @@ const char* read_long([[maybe_unused]] const char* at, [[maybe_unused]] const ch
 #endif
 }
 
-/// Reads one cell up to the separator or the end of the line; null where it is no plain number.
+/// Reads one cell up to the separator or the end of the line; null if it is no plain number.
 const char* read_cell(const char* at, const char* end, char separator, double& value) {
   while (at != end && *at == ' ') ++at;
   if (end - at > 1 && *at == '+' && at[1] != '-') ++at;
@@ -122,10 +123,10 @@ std::optional<Eigen::MatrixXd> number_table(std::string_view text, std::size_t b
                                             char separator, std::size_t columns) {
   if (columns == 0) return std::nullopt;
   for (std::size_t k = 0; k < below; ++k) {
-    // A \r alone ends a line, too, for the other parser.
+    // A \r alone also ends a line for the other parser.
     if (next_line(text).find('\r') != std::string_view::npos) return std::nullopt;
   }
-  // A row takes two characters for each column: many empty lines do not ask for much memory.
+  // A row has at least two characters per column, so many empty lines do not reserve much memory.
   const bool ended = text.ends_with('\n');
   const auto lines =
       static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n')) + (ended ? 0U : 1U);

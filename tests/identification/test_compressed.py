@@ -104,7 +104,7 @@ def test_a_candidate_with_a_shape_out_of_bounds_is_refused(excited: jid.Recordin
     theta[-1, 1] *= 1.5
     with pytest.raises(ValueError, match="stribeck must lie within"):
         compressed.evaluate(theta)
-    with pytest.raises(ValueError, match="one row a parameter"):
+    with pytest.raises(ValueError, match="one row per parameter"):
         compressed.evaluate(theta[:3])
 
 

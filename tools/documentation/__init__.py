@@ -1,1 +1,1 @@
-"""The documentation site: what `make docs` puts together before Sphinx, and what it adds to Sphinx."""
+"""The documentation site: preparation of the sources for Sphinx in `make docs`, and extensions of Sphinx."""

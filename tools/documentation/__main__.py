@@ -1,4 +1,4 @@
-"""Build the documentation site: put the source together, and run Sphinx on it.
+"""Build the documentation site: prepare the sources, and run Sphinx on them.
 
 PYTHONPATH=tools python -m documentation --output build/docs
 """
@@ -19,16 +19,17 @@ from documentation.staging import ROOT, Stage, stage_documents
 
 
 def main() -> int:
-    """Build what is asked for, and return Sphinx's exit code."""
+    """Build the site, and return Sphinx's exit code."""
     parser = argparse.ArgumentParser(
         prog="documentation", description="Build the documentation site."
     )
     parser.add_argument(
-        "--output", type=Path, default=ROOT / "build" / "docs", help="folder of site and source"
+        "--output",
+        type=Path,
+        default=ROOT / "build" / "docs",
+        help="folder of the site and its source",
     )
-    parser.add_argument(
-        "--links", action="store_true", help="also ask whether links to other hosts answer"
-    )
+    parser.add_argument("--links", action="store_true", help="also check links to other hosts")
     arguments = parser.parse_args()
     source = arguments.output / "source"
     stage = Stage(source)
@@ -39,7 +40,7 @@ def main() -> int:
     write_reference(stage)
     stage.write("_static/pictures.css", style())
     site = arguments.output / "site"
-    if stage.finish():  # no page stays on the site whose source is gone
+    if stage.finish():  # no page stays on the site without its source
         shutil.rmtree(site, ignore_errors=True)
     code = _sphinx("html", source, site)
     if code == 0:
@@ -49,14 +50,14 @@ def main() -> int:
     if code == 0 and arguments.links:
         code = _sphinx("linkcheck", source, arguments.output / "links")
     if code == 0:
-        # How old it is; a page that does not change is not written again.
+        # Time of the last check; an unchanged page is not written again.
         (arguments.output / "complete").touch()
         print(f"Open {site / 'index.html'} in a browser; the folder can be served as it is.")
     return code
 
 
 def _sphinx(builder: str, source: Path, target: Path) -> int:
-    """Run Sphinx, warnings are errors, and return its exit code."""
+    """Run Sphinx with warnings as errors, and return its exit code."""
     from sphinx.cmd.build import main as sphinx
 
     options = ["-b", builder, "-c", str(ROOT / "docs"), "-d", str(source.parent / "doctrees")]

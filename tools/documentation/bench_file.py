@@ -1,4 +1,4 @@
-"""The page of reference on the bench file: each key that `[session]` takes, from the options that declare it."""
+"""The reference page of the bench file: each key of `[session]`, from the options that declare it."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _ESTIMATES = (
     *("inertia", "coulomb", "static", "stribeck", "viscous"),
     *("sensor_gain", "sensor_offset"),
 )
-# Heading, introduction, what declares the keys, and fields that are no keys of this table.
+# Heading, introduction, class that declares the keys, and fields that are no keys of this table.
 _Part = tuple[str, str, Any, Collection[str]]
 _WIRING: tuple[_Part, ...] = (
     ("## `[session]`", "Timing of the control loop.", SessionOptions, {"resolution"}),
@@ -88,7 +88,7 @@ _RUNNING: tuple[_Part, ...] = (
 
 
 def bench_file_page() -> str:
-    """Every key of a bench file's table `[session]`."""
+    """Return every key of a bench file's table `[session]`."""
     lines = [*_HEAD, *_described(_WIRING), *_motions(), *_laws(), *_described(_RUNNING)]
     return "\n".join([*lines, *_emulated_joint()])
 
@@ -100,7 +100,7 @@ def _described(parts: Iterable[_Part]) -> Iterator[str]:
 
 
 def _options(kind: Any, others: Collection[str]) -> Iterator[str]:
-    """The fields of a dataclass as keys, with the defaults that their texts do not name."""
+    """Return the fields of a dataclass as keys, with the defaults that their texts do not name."""
     texts = described(kind) | described(kind, "Attributes")
     for field in fields(kind):
         if field.name in others:
@@ -119,7 +119,7 @@ def _default(value: object) -> str:
 
 
 def _motions() -> Iterator[str]:
-    """The forms of a motion with what they take."""
+    """Return the forms of a motion with their keys."""
     yield from (
         "## `[session.trajectory]`",
         "",
@@ -141,7 +141,7 @@ def _motions() -> Iterator[str]:
 
 
 def _laws() -> Iterator[str]:
-    """The control laws with their gains."""
+    """Return the control laws with their gains."""
     overriding = ", ".join(f"`{name}`" for name in _ESTIMATES)
     yield from (
         "## `[session.controller]`",
@@ -163,7 +163,7 @@ def _laws() -> Iterator[str]:
 
 
 def _emulated_joint() -> Iterator[str]:
-    """The true values and the sensor of an emulated joint."""
+    """Return the true values and the sensor of an emulated joint."""
     yield from (
         "## `[session.emulated.truth]`",
         "",

@@ -1,4 +1,4 @@
-"""Recordings that each show one finding: a good one with a defect, a joint that is not as modelled, or a file."""
+"""Recordings that each show one finding: a good recording with a defect, a joint unlike its model, or a file."""
 
 from __future__ import annotations
 
@@ -25,16 +25,16 @@ DURATION = 9.0
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """What is identified, and how."""
+    """The identified recordings, and the call."""
 
     recording: jid.Recording
     others: tuple[jid.Recording, ...] = ()
     joint: jid.Joint | None = field(default_factory=jid.thesis_joint)
     identify: Mapping[str, Any] = field(default_factory=dict)
-    text: str = ""  # what a file looks like, where the defect is in the file
+    text: str = ""  # content of a file, if the defect is in the file
 
     def estimate(self) -> jid.Estimate:
-        """Identify it."""
+        """Identify the recordings."""
         return jid.identify(
             [self.recording, *self.others],
             self.joint,
@@ -54,7 +54,7 @@ def cases(folder: Path) -> dict[str, Case]:
     return damaged(good) | _mismatched() | _unlike(good) | _of_files(good, folder)
 
 
-# The names of the tests' own table of defects, where it has the code.
+# Names from the tests' own table of defects, if it has the code.
 _DAMAGED: dict[str, Callable[[jid.Recording], jid.Recording]] = {
     "reversed_sign": defects.reversed_torque,
     "implausible_units": defects.degrees,
@@ -77,14 +77,14 @@ _DAMAGED: dict[str, Callable[[jid.Recording], jid.Recording]] = {
 
 
 def _rippled(recording: jid.Recording) -> jid.Recording:
-    """Two periods a turn of the motor."""
+    """Add a torque with two periods per revolution of the motor."""
     assert recording.sensor is not None
     ripple = 1.5 * np.sin(202.0 * recording.position)
     return defects.changed(recording, sensor=recording.sensor + ripple)
 
 
 def _frozen(recording: jid.Recording) -> jid.Recording:
-    """The sensor's cable breaks at 4 s, for two seconds."""
+    """Break the sensor's cable at 4 s, for two seconds."""
     assert recording.sensor is not None
     sensor = recording.sensor.copy()
     broken = (recording.time > 4.0) & (recording.time < 6.0)
@@ -93,7 +93,7 @@ def _frozen(recording: jid.Recording) -> jid.Recording:
 
 
 def damaged(good: jid.Recording) -> dict[str, Case]:
-    """Return those that are a good recording with a defect."""
+    """Return the cases that are a good recording with a defect."""
     made = _DAMAGED | {"constant_signal": _frozen, "ripple": _rippled}
     found = {code: Case(recording=make(good)) for code, make in made.items()}
     late = defects.late_velocity(good)
@@ -109,7 +109,7 @@ def damaged(good: jid.Recording) -> dict[str, Case]:
 
 @dataclass(frozen=True, kw_only=True)
 class _Unlike:
-    """How a simulated joint, its log or the call differ from what is modelled."""
+    """Differences of a simulated joint, its log or the call from the model."""
 
     plant: Mapping[str, float] = field(default_factory=dict)
     law: Mapping[str, float] = field(default_factory=dict)
@@ -121,7 +121,7 @@ class _Unlike:
 
 
 def _plain(model: str, **facts: Any) -> jid.Joint:
-    """A joint without a sensor, of a named model."""
+    """Return a joint without a sensor, with a named model."""
     return jid.Joint(torque_hold="zoh", model=jid.Model.parse(model), **facts)
 
 
@@ -171,7 +171,7 @@ _UNLIKE: Mapping[str, _Unlike] = {
 
 
 def _mismatched() -> dict[str, Case]:
-    """Joints that are not as modelled, simulated side by side."""
+    """Return joints that differ from their model, simulated in parallel."""
     benches = [
         Bench(
             motion=thesis(np.radians([each.degrees]))
@@ -197,7 +197,7 @@ def _mismatched() -> dict[str, Case]:
 
 
 def _unlike(good: jid.Recording) -> dict[str, Case]:
-    """Other causes, from formulas."""
+    """Return other causes, from formulas."""
     time = np.arange(0.0, 8.0, 1e-3)
     noise = np.random.default_rng(7).normal(size=(2, time.size))
     position = 0.8 * np.sin(2.1 * time) + 0.3 * np.sin(5.3 * time + 1.0)
@@ -266,7 +266,7 @@ def _unlike(good: jid.Recording) -> dict[str, Case]:
 
 
 def _behind_the_friction(good: jid.Recording) -> jid.Recording:
-    """The torque of the link alone."""
+    """Return the torque of only the link."""
     link = 0.3 * np.gradient(good.velocity, good.time) + 5.0 * np.sin(good.position)
     return jid.Recording(
         time=good.time, position=good.position, velocity=good.velocity, torque=link
@@ -274,7 +274,7 @@ def _behind_the_friction(good: jid.Recording) -> jid.Recording:
 
 
 def _of_files(good: jid.Recording, folder: Path) -> dict[str, Case]:
-    """Files that say less, or more, than is needed."""
+    """Return files with too little or too much information."""
     assert good.torque is not None
     table = {
         name: getattr(good, name) for name in ("time", "position", "velocity", "torque", "sensor")
@@ -312,7 +312,7 @@ def _of_files(good: jid.Recording, folder: Path) -> dict[str, Case]:
 
 
 def _scope(good: jid.Recording) -> list[str]:
-    """An export of TwinCAT Scope whose torque has four times the period of the position."""
+    """Return an export of TwinCAT Scope with a torque of four times the period of the position."""
     assert good.torque is not None
     rows = len(good)
     head = ["Name\tScope Project", "File\tC:\\run.svdx", "", ""]

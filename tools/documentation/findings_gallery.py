@@ -1,7 +1,7 @@
-"""The site's page of findings: a section for each, with a recording that has it: picture, meaning, remedy.
+"""The site's page of findings. Each section has a recording with the finding: picture, meaning, remedy.
 
-What a finding means and what to do comes from the registry of the checks, its sentence from the identification of a
-recording that was made for it.
+Meaning and remedy come from the registry of the checks. The sentence comes from the identification of a recording that
+was made for the finding.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from jointid.identification.warnings.table import in_place_of_the_table
 
 
 def write_pictures(stage: Stage) -> None:
-    """Put the pictures of recordings without a defect there: a real joint's friction, and windows."""
+    """Write the pictures of recordings without a defect: a real joint's friction, and windows."""
     joint = GOOD.parent / "kr300_joint1.toml"
     real = jid.load(joint.with_suffix(".csv.gz"))
     found = jid.identify(real, jid.Joint.load(joint), search="separable")
@@ -38,7 +38,7 @@ def write_pictures(stage: Stage) -> None:
 
 
 def write_findings(stage: Stage) -> None:
-    """Put the page of findings there, with a section for each finding instead of its table."""
+    """Write the page of findings, with a section for each finding instead of its table."""
     sections = {}
     with tempfile.TemporaryDirectory() as folder:
         made = cases(Path(folder))
@@ -51,11 +51,11 @@ def write_findings(stage: Stage) -> None:
 
 
 def _shown(code: str, case: Case) -> tuple[Finding, str]:
-    """The finding of a case, and the picture of it."""
+    """Return the finding of a case, and its picture."""
     estimate = case.estimate()
     found = next((each for each in estimate.findings if each.code == code), None)
     if found is None:
-        raise LookupError(f"the recording that is made for {code} does not have that finding")
+        raise LookupError(f"the recording for {code} does not have that finding")
     draw = SYMPTOMS[code].picture
     if draw is None:
         return found, f"<pre>{escape(case.text)}\n…</pre>"
@@ -63,7 +63,7 @@ def _shown(code: str, case: Case) -> tuple[Finding, str]:
 
 
 def _framed(figure: Html) -> str:
-    """A picture, with the frame that the style sheet knows."""
+    """Return a picture in the frame of the style sheet."""
     return f'<div class="jointid-picture">{figure}</div>'
 
 
@@ -104,12 +104,12 @@ def _sentence(text: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """A sentence that Markdown shows as it is."""
+    """Return a sentence that Markdown shows unchanged."""
     return text.replace("_", "\\_").replace("*", "\\*").replace("<", "&lt;").replace("|", "\\|")
 
 
 def _code(text: str) -> str:
-    """An advice: what can be pasted stands behind "with" or "by", and what it is for in brackets behind that."""
+    """Format an advice: code to paste follows "with" or "by", and its purpose follows in brackets."""
     code = r"(?=--|jointid |[\w.]+[=(])[^`]+?"
     found = re.fullmatch(rf"(.*?\b(?:with|designed by)) ({code})( \([^()]*\))?", text)
     if found is None:

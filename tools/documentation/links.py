@@ -1,4 +1,4 @@
-"""Whether each link of the built site leads to a page and a place on it, and nothing is loaded from another host."""
+"""Check that each link of the built site leads to a page and a place on it, and that no other host is used."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ _LOADING = {
 
 
 class Page(HTMLParser):
-    """The links of a page, the names of its places, and what it loads."""
+    """The links of a page, the names of its places, and the files that it loads."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -27,7 +27,7 @@ class Page(HTMLParser):
         self.feed(text)
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        """Keep what an element links to, loads and names."""
+        """Keep the links, loaded files and names of an element."""
         for name, value in attrs:
             if name in ("id", "name") and value:
                 self.places.add(value)
@@ -36,7 +36,7 @@ class Page(HTMLParser):
 
 
 def pages_of(site: Path) -> dict[Path, Page]:
-    """Return every page of a site by its path within it."""
+    """Return every page of a site by its path within the site."""
     return {
         path.relative_to(site): Page(path.read_text(encoding="utf-8"))
         for path in sorted(site.rglob("*.html"))
@@ -44,7 +44,7 @@ def pages_of(site: Path) -> dict[Path, Page]:
 
 
 def broken(site: Path) -> Iterator[str]:
-    """Yield what is wrong with the links of a site, a sentence each."""
+    """Yield the faults of a site's links, one sentence each."""
     pages = pages_of(site)
     for page, found in pages.items():
         for target in found.loaded:

@@ -1,4 +1,4 @@
-"""Formulas as MathML: every browser draws it by itself, so that no page loads a program or a font."""
+"""Formulas as MathML, which every browser draws without loading a program or a font."""
 
 from __future__ import annotations
 
@@ -31,13 +31,13 @@ def _inline(writer: Any, node: nodes.math) -> None:
 
 
 def _display(writer: Any, node: nodes.math_block) -> None:
-    # A formula that is wider than a phone scrolls by itself.
+    # A formula that is wider than a phone has its own scroll bar.
     writer.body.append(f'<div class="formula">{mathml(node.astext(), display=True)}</div>')
     raise nodes.SkipNode
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Make it the way in which Sphinx writes formulas."""
+    """Register MathML as Sphinx's format of formulas."""
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
     app.config.html_math_renderer = "mathml"
     return {"parallel_read_safe": True, "parallel_write_safe": True}

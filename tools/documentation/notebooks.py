@@ -1,6 +1,6 @@
-"""Notebooks as pages: what they showed when they were run is shown; nothing is run again.
+"""Notebooks as pages with their stored outputs; nothing is run again.
 
-A notebook becomes Markdown, which MyST reads: its text as it is, its code as blocks, what it printed as text, and its
+A notebook becomes Markdown for MyST: its text unchanged, its code as blocks, its printed output as text, and its
 pictures as files. Tables in HTML stay HTML.
 """
 
@@ -37,7 +37,7 @@ def markdown_of(notebook: dict[str, Any], folder: Path, name: str) -> str:
     for cell in notebook["cells"]:
         source = "".join(cell["source"])
         if cell["cell_type"] == "markdown":
-            # A page of the repository is a page beside this folder.
+            # A page of the repository becomes a page next to this folder.
             parts.append(_REPOSITORY.sub(r"[\1](../\1)", source))
             continue
         parts.append(_block("python", source))
@@ -53,7 +53,7 @@ def _block(kind: str, text: str) -> str:
 
 
 def _shown(output: dict[str, Any], folder: Path) -> str:
-    """One output of a cell, in the richest form that a page can show."""
+    """Return one output of a cell, in the richest form that a page can show."""
     if output["output_type"] == "stream":
         return _block(
             "{code-block} text\n:class: shown", _TERMINAL.sub("", "".join(output["text"]))
@@ -72,7 +72,7 @@ def _shown(output: dict[str, Any], folder: Path) -> str:
 
 
 class NotebookParser(MystParser):
-    """Reads a notebook as the Markdown that it becomes."""
+    """Parser of a notebook, which becomes Markdown."""
 
     supported = ("notebook",)
 
@@ -84,7 +84,7 @@ class NotebookParser(MystParser):
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    """Make it the reader of .ipynb files."""
+    """Register the parser for .ipynb files."""
     app.setup_extension("myst_parser")
     app.add_source_suffix(".ipynb", "notebook")
     app.add_source_parser(NotebookParser)

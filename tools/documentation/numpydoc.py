@@ -11,14 +11,14 @@ _FIELD = re.compile(r"^(\w[\w, ]*) : (.*)$")
 
 @dataclass(frozen=True)
 class Described:
-    """What a docstring says of one field."""
+    """Description of one field in a docstring."""
 
     kind: str
     text: str
 
 
 def described(subject: object, section: str = "Parameters") -> dict[str, Described]:
-    """Return the fields of a section of a docstring by name; fields that share a line share its text."""
+    """Return the fields of a section of a docstring by name. Fields on one line share its text."""
     text = inspect.cleandoc(subject.__doc__ or "")
     parts = re.split(r"^(\w[\w ]*)\n-{3,}\n", text, flags=re.MULTILINE)
     wanted = dict(zip(parts[1::2], parts[2::2], strict=True)).get(section, "")

@@ -1,4 +1,4 @@
-"""What shows a finding: pictures of recordings and estimates, drawn as those of the reports are."""
+"""Pictures for findings: recordings and estimates, drawn in the style of the reports."""
 
 from __future__ import annotations
 
@@ -29,13 +29,13 @@ _AXES = {
 
 
 def style() -> str:
-    """Return the style sheet of the pictures on a page of the site, whose theme has its own switch to dark."""
+    """Return the style sheet of the pictures on a page of the site, which has its own switch to dark."""
     light, dark = (
         " ".join(f"--{name}: {colour};" for name, colour in colours.items())
         for colours in (palette.LIGHT, palette.DARK)
     )
     rules = STYLE.partition("\nsvg")[2]
-    # Only pictures of ours: the theme draws its icons as svg, too.
+    # Only our pictures, because the theme draws its icons as svg, too.
     inside = ("svg" + rules).replace("svg", ".jointid-picture svg")
     return (
         f"body {{ {light} }}\n"
@@ -46,7 +46,7 @@ def style() -> str:
 
 
 def over_time(*signals: str, caption: str, start: float = 0.0, stop: float = np.inf) -> Drawing:
-    """Signals of the recording in a stretch of time."""
+    """Draw signals of the recording in a stretch of time."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
         chosen = (recording.time >= start) & (recording.time <= stop)
@@ -71,7 +71,7 @@ def over_time(*signals: str, caption: str, start: float = 0.0, stop: float = np.
 
 
 def samples(signal: str, *, caption: str, start: float, stop: float) -> Drawing:
-    """Single samples of a signal."""
+    """Draw single samples of a signal."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
         chosen = (recording.time >= start) & (recording.time <= stop)
@@ -86,7 +86,7 @@ def samples(signal: str, *, caption: str, start: float, stop: float) -> Drawing:
 
 
 def rate(*, caption: str, start: float, stop: float) -> Drawing:
-    """The recorded velocity, and the rate of the position."""
+    """Draw the recorded velocity, and the rate of the position."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
         chosen = (recording.time >= start) & (recording.time <= stop)
@@ -104,7 +104,7 @@ def rate(*, caption: str, start: float, stop: float) -> Drawing:
 
 
 def steps(*, caption: str) -> Drawing:
-    """How long the steps between time stamps are."""
+    """Draw the steps between time stamps."""
 
     def drawn(recording: jid.Recording, _: jid.Estimate) -> Html:
         count, edges = np.histogram(1e3 * np.diff(recording.time), bins=40)
@@ -118,17 +118,17 @@ def steps(*, caption: str) -> Drawing:
 
 
 def friction(_: jid.Recording, estimate: jid.Estimate) -> Html:
-    """The friction map of the report."""
+    """Draw the friction map of the report."""
     return html_block(Figure(friction_map(estimate)))
 
 
 def windows(_: jid.Recording, estimate: jid.Estimate) -> Html:
-    """The report's windows and their residuals over time."""
+    """Draw the report's windows and their residuals over time."""
     return html_block(Figure(window_means(estimate)))
 
 
 def residual_over(axis: str, *, caption: str) -> Drawing:
-    """The windows' residuals over the position, the velocity, or the load on the gear."""
+    """Draw the windows' residuals over the position, the velocity, or the load on the gear."""
 
     def drawn(recording: jid.Recording, estimate: jid.Estimate) -> Html:
         table = estimate.windows

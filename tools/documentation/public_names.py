@@ -1,4 +1,4 @@
-"""The public names, in groups: a page each, the documented ones first, with what their docstrings say."""
+"""The public names in groups, one page each: documented names first, with their docstrings."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class Group:
     text: str = ""
 
     def page(self) -> str:
-        """The page of the group."""
+        """Return the page of the group."""
         lines = [f"# {self.title}", ""]
         lines += [self.text, ""] if self.text else []
         for name in self.first:
@@ -32,17 +32,17 @@ class Group:
 
     @property
     def first(self) -> tuple[str, ...]:
-        """The names that are documented at the top of the package, and those of a module."""
+        """Return the names that are documented at the top of the package, and those of a module."""
         return tuple(name for name in self.names if name not in self.more)
 
     @property
     def more(self) -> tuple[str, ...]:
-        """The names of the package that are not at its top: what the others take and return."""
+        """Return the names that are not at the top of the package: arguments and results of the others."""
         return tuple(name for name in self.names if _at_top(name) not in (None, *jid.__all__))
 
 
 def _at_top(name: str) -> str | None:
-    """The name in the package itself; None for one of a module."""
+    """Return the name in the package itself; None for a name of a module."""
     module, _, own = name.rpartition(".")
     return own if module == "jointid" else None
 
@@ -55,7 +55,7 @@ def _section(level: str, name: str) -> list[str]:
 def _directive(name: str) -> str:
     found = named(name)
     if inspect.isclass(found):
-        # Fields and methods may stand in a class that has no page.
+        # Fields and methods may belong to a class without a page.
         foreign = [each.__name__ for each in found.__mro__ if not _is_ours(each)]
         options = ["   :members:", f"   :inherited-members: {', '.join(foreign)}"]
         if issubclass(found, Exception):
@@ -71,7 +71,7 @@ def _is_ours(kind: type) -> bool:
 
 
 def named(name: str) -> object:
-    """Return what a full name stands for."""
+    """Return the object with a full name."""
     found: object = jid
     for part in name.split(".")[1:]:
         found = getattr(found, part)
@@ -83,11 +83,11 @@ def _of(module: str, *names: str) -> tuple[str, ...]:
 
 
 def _promised(module: str) -> tuple[str, ...]:
-    """The public names of a module of the package."""
+    """Return the public names of a module of the package."""
     return tuple(import_module(f"jointid.{module}").__all__)
 
 
-# What a verb does for one subject, under the names that they had before there were verbs: for one version.
+# Verbs for one subject, under their names before there were verbs: for one version.
 ALIASES = frozenset(
     {
         *("identify_joints", "identify_robot", "identify_servo"),
@@ -237,7 +237,7 @@ GROUPS = (
 
 
 def public_names() -> set[str]:
-    """Every name that the package promises, with its module."""
+    """Return every name that the package promises, with its module."""
     plain = {f"jointid.{name}" for name in jid._HOME_OF if name not in ALIASES}
     for module in _MODULES:
         plain |= set(_of(f"jointid.{module}", *_promised(module)))
@@ -256,5 +256,5 @@ def check_groups() -> None:
     wrong = public_names() ^ set(listed) | {name for name in listed if listed.count(name) > 1}
     if wrong:
         raise LookupError(
-            f"tools/documentation/public_names.py does not list once: {', '.join(sorted(wrong))}"
+            f"tools/documentation/public_names.py must list each name once: {', '.join(sorted(wrong))}"
         )

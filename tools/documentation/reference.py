@@ -1,4 +1,4 @@
-"""Pages of reference, written from the code: the commands' options, the files, the public names."""
+"""Reference pages written from the code: the commands' options, the files, the public names."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from jointid.joint.voltage_drive import INPUTS, VoltageDrive
 
 
 def write_reference(stage: Stage) -> None:
-    """Put all of them there."""
+    """Write all reference pages."""
     stage.write("reference/options.md", options_page())
     stage.write("reference/joint_file.md", joint_file_page())
     stage.write("reference/bench_file.md", bench_file_page())
@@ -33,7 +33,7 @@ def write_reference(stage: Stage) -> None:
 
 
 def options_page() -> str:
-    """Every option of every command, from the parser."""
+    """Return every option of every command, from the parser."""
     lines = [
         "# Options of each command",
         "",
@@ -43,7 +43,7 @@ def options_page() -> str:
     ]
     for name, parser in _parsers().items():
         lines += [f"## jointid {name}", "", f"{sentence(HELP[name])}", ""]
-        parser.format_help()  # some help is only found out when it is asked for
+        parser.format_help()  # some help is only computed when it is requested
         for group in parser._action_groups:
             lines += [line for action in group._group_actions for line in _option(action)]
         if parser.epilog:
@@ -64,7 +64,7 @@ def _parsers() -> Mapping[str, argparse.ArgumentParser]:
 
 
 def _option(action: argparse.Action) -> Iterator[str]:
-    """A definition: how it is typed, and what it means."""
+    """Return a definition: the option, and its meaning."""
     if action.dest == "help":
         return
     value = action.metavar or (action.dest.upper() if action.nargs != 0 else "")
@@ -78,7 +78,7 @@ def _option(action: argparse.Action) -> Iterator[str]:
 
 
 def _epilog(text: str) -> tuple[list[str], str]:
-    """The example lines, and what is said behind them."""
+    """Return the example lines, and the text after them."""
     lines = [line.strip() for line in text.splitlines()]
     examples = [line for line in lines if line.startswith("jointid ")]
     rest = [
@@ -119,7 +119,7 @@ _OWN = {
 
 
 def joint_file_page() -> str:
-    """Every key of a joint file, from the reader and the docstrings of what it makes."""
+    """Return every key of a joint file, from the reader and the docstrings of its classes."""
     joint = described(jid.Joint)
     model = described(jid.Model)
     texts: dict[str, Mapping[str, Described]] = {

@@ -1,6 +1,6 @@
-"""The source folder that Sphinx reads: docs/, the notebooks, pages from elsewhere, and pages that are written here.
+"""The source folder for Sphinx: docs/, the notebooks, pages from outside docs/, and generated pages.
 
-Nothing is written into docs/. A page is only written anew when it changed, so that Sphinx reads again what it must.
+Nothing is written into docs/. A page is only written if it changed, so that Sphinx reads only changed pages again.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from pathlib import Path
 from jointid.identification.warnings.registry import finding_types
 
 ROOT = Path(__file__).resolve().parents[2]
-# Pages from outside docs/, by their place in the repository and on the site.
+# Pages from outside docs/, by their path in the repository and on the site.
 ELSEWHERE = {
     "CHANGELOG.md": "changelog.md",
     "examples/README.md": "examples.md",
     "examples/data/README.md": "example_data.md",
 }
-# What has no page of its own, and the page that stands for it.
+# Files without a page of their own, and the page that replaces each.
 INSTEAD = {
     "README.md": "index.md",
     "notebooks": "index.md#notebooks",
@@ -28,25 +28,25 @@ INSTEAD = {
 }
 _LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 _CODE = re.compile(r"(^```.*?^```|^~~~.*?^~~~|`[^`\n]+`)", re.DOTALL | re.MULTILINE)
-# Pages of the repository alone: on the site a link to one of them is its text.
+# Pages that exist only in the repository: on the site, a link to one of them is only its text.
 _OFF_THE_SITE = ("docs/contributors/", "CONTRIBUTING.md", "SECURITY.md")
-# What docs/ has for Sphinx itself, or for nobody's page.
+# Files of docs/ that are for Sphinx itself, or on no page.
 _ENDINGS = (".md", ".png", ".svg", ".csv", ".css", ".js", ".html")
 
 
 class Stage:
-    """The source folder, and which of its files this run has put there."""
+    """The source folder, and the files that this run has written."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self._kept: set[Path] = set()
 
     def write(self, name: str, text: str) -> None:
-        """Put a page there."""
+        """Write a page."""
         self.write_bytes(name, text.encode())
 
     def write_bytes(self, name: str, content: bytes) -> None:
-        """Put a file there, unless it is there already."""
+        """Write a file, unless it exists already."""
         path = self.folder / name
         self._kept.add(path)
         if path.is_file() and path.read_bytes() == content:
@@ -55,12 +55,12 @@ class Stage:
         path.write_bytes(content)
 
     def page(self, home: str, name: str) -> None:
-        """Put a page of the repository there, its links led to where their targets are on the site."""
+        """Write a page of the repository, with its links changed to their targets on the site."""
         text = _without_missing((ROOT / home).read_text(encoding="utf-8"))
         self.write(name, self.relinked(text, home, name))
 
     def relinked(self, text: str, home: str, name: str) -> str:
-        """Return a page's text with its links as they are on the site.
+        """Return a page's text with its links as on the site.
 
         Parameters
         ----------
@@ -70,7 +70,7 @@ class Stage:
             Its place in the repository, and on the site.
         """
         parts = _CODE.split(text)
-        # A link's text may be code: links are looked for in the whole text, but not those within code.
+        # A link's text may contain code. So links are searched in the whole text, except within code.
         hidden = {f"\0{number}\0": part for number, part in enumerate(parts) if number % 2}
         shown = "".join(f"\0{i}\0" if i % 2 else part for i, part in enumerate(parts))
 
@@ -92,7 +92,7 @@ class Stage:
         return shown
 
     def _place(self, target: str) -> str | None:
-        """Where a file of the repository is on the site; None: nowhere, it is a folder or a contributors' page."""
+        """Return a file's path on the site; None if it is not there (a folder or a contributors' page)."""
         path, hash_sign, anchor = target.partition("#")
         for known, there in (*INSTEAD.items(), *ELSEWHERE.items()):
             if target == known:
@@ -101,7 +101,7 @@ class Stage:
                 return there if known in INSTEAD else there + hash_sign + anchor
         if path.startswith(_OFF_THE_SITE):
             return None
-        if path.startswith("docs/") and path.endswith(_ENDINGS):  # also pages that are written here
+        if path.startswith("docs/") and path.endswith(_ENDINGS):  # also generated pages
             return target.removeprefix("docs/")
         if path.startswith("notebooks/"):
             return target.replace("notebooks/", "tutorials/", 1)
@@ -112,7 +112,7 @@ class Stage:
         return f"repository/{path}"
 
     def finish(self) -> bool:
-        """Remove what an earlier run has put there and this one has not; return whether there was any."""
+        """Remove files that an earlier run wrote and this one did not; return whether there were any."""
         old = [path for path in self.folder.rglob("*") if path.is_file() and path not in self._kept]
         # Pictures of notebooks are written while they are read.
         old = [path for path in old if path.parent != self.folder / "tutorials" / "pictures"]
@@ -122,7 +122,7 @@ class Stage:
 
 
 def stage_documents(stage: Stage) -> None:
-    """Put everything there that is not written by a program."""
+    """Write everything that no program generates."""
     for path in _documents():
         place = path.relative_to(ROOT / "docs").as_posix()
         if place == "findings.md":
@@ -134,12 +134,12 @@ def stage_documents(stage: Stage) -> None:
     for home, name in ELSEWHERE.items():
         stage.page(home, name)
     for path in sorted((ROOT / "notebooks").glob("*.ipynb")):
-        for folder in ("tutorials", "as_it_is/notebooks"):  # as a page, and to be downloaded
+        for folder in ("tutorials", "as_it_is/notebooks"):  # as a page, and for download
             stage.write_bytes(f"{folder}/{path.name}", path.read_bytes())
 
 
 def _without_missing(text: str) -> str:
-    """Leave out the lines "? title <page>" whose page is not there yet; of the others, the question mark."""
+    """Leave out lines "? title <page>" without a page yet; in the others, remove the question mark."""
 
     def kept(found: re.Match[str]) -> str:
         there = (ROOT / "docs" / f"{found[2]}.md").is_file()
@@ -149,7 +149,7 @@ def _without_missing(text: str) -> str:
 
 
 def _documents() -> Iterator[Path]:
-    """The files of docs/ that go to the site as they are."""
+    """Return the files of docs/ that go to the site unchanged."""
     for path in sorted((ROOT / "docs").rglob("*")):
         place = path.relative_to(ROOT).as_posix()
         if path.is_file() and path.suffix in _ENDINGS and not place.startswith(_OFF_THE_SITE):

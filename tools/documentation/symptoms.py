@@ -1,4 +1,4 @@
-"""What a person sees of each finding, and the picture that shows it best."""
+"""The symptom of each finding for a person, and the picture that shows it best."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from jointid.identification.causes.families import FAMILIES
 
 @dataclass(frozen=True)
 class Symptom:
-    """What is seen, and a picture of it; without one, the case's file is shown."""
+    """The symptom, and a picture of it; without a picture, the case's file is shown."""
 
     seen: str
     picture: Drawing | None = None
 
 
 _RATE = {"start": 1.0, "stop": 1.12}
-# By code. A cause without words of its own is described by its residual.
+# By code. A cause without its own text is described by its residual.
 SYMPTOMS: Mapping[str, Symptom] = {
     family.name: Symptom(f"The residual is not noise: {family.meaning}.", windows)
     for family in FAMILIES
@@ -92,7 +92,7 @@ SYMPTOMS: Mapping[str, Symptom] = {
         over_time("sensor", caption="The reading is at the end of the sensor's range."),
     ),
     "spikes": Symptom(
-        "A single sample lies far off.",
+        "A single sample lies far from its neighbours.",
         over_time("sensor", caption="One sample at 7 s is 60 units off.", start=6.0, stop=8.0),
     ),
     "jumps": Symptom(

@@ -1,4 +1,4 @@
-"""Words of the written pages: sentences, docstrings as Markdown, types as TOML calls them, definitions."""
+"""Wording of the generated pages: sentences, docstrings as Markdown, types in TOML's terms, definitions."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ def sentence(text: str) -> str:
 
 
 def escaped(text: str) -> str:
-    """Return a text without meaning for Markdown."""
+    """Return a text in which Markdown's special characters have no meaning."""
     return re.sub(r"([*_|<>\[\]])", r"\\\1", text)
 
 
@@ -25,7 +25,7 @@ def markdown(text: str) -> str:
 
 
 def kind_in_toml(kind: str) -> str:
-    """Return a docstring's type in the words of TOML."""
+    """Return a docstring's type in TOML's terms."""
     words = {"float": "number", "str": "text", "bool": "true or false", "int": "whole number"}
     words |= {"mapping of text to text": "table of texts", "tuple of number": "list of numbers"}
     words |= {"tuple of whole number": "list of whole numbers"}

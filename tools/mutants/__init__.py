@@ -1,1 +1,1 @@
-"""Mutants: lines of the program changed on purpose, one at a time, and whether a test notices."""
+"""Mutants: single changed lines of the program, and whether a test notices each."""

@@ -18,7 +18,7 @@ from mutants.running import Trials, Verdict
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Exit code 0: at least 90 % die, and each of the others is justified; 1: not so; 2: a list is wrong."""
+    """Return 0 if at least 90 % die and each of the others is justified, 1 if not, 2 if a list is wrong."""
     options = _parser().parse_args(arguments)
     try:
         return _tried(options)
@@ -30,15 +30,25 @@ def main(arguments: list[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="mutants", description=__doc__)
     parser.add_argument("--lists", type=Path, default=LISTS, help="folder of the lists")
-    parser.add_argument("--only", default="", metavar="TEXT", help="in the name of list or file")
-    parser.add_argument("--python", action="store_true", help="Python alone: nothing is compiled")
-    parser.add_argument("--again", action="store_true", help="also those whose verdict still holds")
-    parser.add_argument("--sample", type=int, metavar="N", help="N drawn of those killed earlier")
-    parser.add_argument("--seed", type=int, default=1, help="of the draw")
-    parser.add_argument("--quick", action="store_true", help="no slow tests; nothing is kept")
-    parser.add_argument("--check", action="store_true", help="that each text is there, no trial")
-    parser.add_argument("--verdicts", type=Path, default=VERDICTS, help="folder of what was found")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1, help="processes at a time")
+    parser.add_argument(
+        "--only", default="", metavar="TEXT", help="only lists or files with this in their name"
+    )
+    parser.add_argument(
+        "--python", action="store_true", help="only mutants in Python; nothing is compiled"
+    )
+    parser.add_argument("--again", action="store_true", help="also mutants with a valid verdict")
+    parser.add_argument(
+        "--sample", type=int, metavar="N", help="a sample of N mutants that were killed earlier"
+    )
+    parser.add_argument("--seed", type=int, default=1, help="seed of the sample")
+    parser.add_argument("--quick", action="store_true", help="skip slow tests; store no verdict")
+    parser.add_argument(
+        "--check", action="store_true", help="only check that each text is in its place"
+    )
+    parser.add_argument("--verdicts", type=Path, default=VERDICTS, help="folder of the results")
+    parser.add_argument(
+        "--jobs", type=int, default=os.cpu_count() or 1, help="number of parallel processes"
+    )
     parser.add_argument("--folder", type=Path, default=REPOSITORY / "build" / "mutants")
     parser.add_argument("--write", action="store_true", help="write the part of the page")
     return parser
@@ -90,7 +100,7 @@ def _trials(
         return []
     extension, core_check = tree.installed_core(), None
     if not all(each.is_python for each in mutants):
-        # All of them, so that another choice needs no compiler.
+        # All mutants, so that another choice needs no compiler.
         print("building the core with all mutants in it", flush=True)
         inside = [each for each in everything if not each.is_python]
         extension, core_check = tree.built_core(folder, inside, options.jobs)

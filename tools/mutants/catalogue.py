@@ -1,4 +1,4 @@
-"""The lists of mutants, and the place of each in the sources as they are now."""
+"""The lists of mutants, and the place of each in the current sources."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _OF_TWO_SIDES = ("/", "%", "<", ">", "=", "|", "^", "?", ":")
 
 
 class MutantError(Exception):
-    """A list that cannot be used as it stands."""
+    """A list that cannot be used."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,23 +26,23 @@ class Mutant:
     Attributes
     ----------
     number : int
-        Counted from 1 over all lists; 0 is the program as it is.
+        Counted from 1 over all lists; 0 is the unchanged program.
     room : str
         Name of the list.
     path : str
         File, from the root of the repository.
     line : str
-        Text that stands once in the file, on one line.
+        Text that occurs once in the file, on one line.
     was, becomes : str
-        Part of that text, which stands once in it, and what replaces it.
+        Part of that text, which occurs once in it, and its replacement.
     checks : tuple of str
         Parts of the names of the core's checks that should notice (C++ only).
     tests : tuple of str
         pytest's names of the tests that should notice.
     justified : str
-        Why no test can or need notice; empty where one does.
+        Reason why no test can or must notice; empty if one does.
     named : bool
-        Whether it survived when mutants were first tried by hand (issue 17).
+        Whether it survived the first trial by hand (issue 17).
     """
 
     number: int
@@ -58,19 +58,19 @@ class Mutant:
 
     @property
     def is_python(self) -> bool:
-        """Whether the source file itself is replaced; in C++ a switch chooses at run time."""
+        """Whether the source file itself is replaced. In C++ a switch chooses at run time."""
         return self.path.endswith(".py")
 
     def __str__(self) -> str:
         return f"{self.path}: `{self.was}` becomes `{self.becomes}`"
 
     def place(self, text: str) -> tuple[int, int]:
-        """Where `was` begins and ends in the file's text.
+        """Return the begin and end of `was` in the file's text.
 
         Raises
         ------
         MutantError
-            If the line or the part is not there, or there more than once.
+            If the line or the part is missing, or occurs more than once.
         """
         _once(text, self.line, f"the mutant of {self.path}", "line", self.line)
         begin = text.index(self.line)
@@ -81,7 +81,7 @@ class Mutant:
         return begin, begin + len(self.was)
 
     def applied(self, text: str) -> str:
-        """The file's text with the change."""
+        """Return the file's text with the change."""
         begin, end = self.place(text)
         return text[:begin] + self.becomes + text[end:]
 
@@ -90,11 +90,11 @@ def _once(text: str, part: str, whose: str, what: str, shown: str) -> None:
     found = text.count(part)
     if found != 1:
         state = "is no longer there" if found == 0 else f"stands there {found} times"
-        raise MutantError(f"{whose}: the {what} `{shown}` {state}; write the list anew for it")
+        raise MutantError(f"{whose}: the {what} `{shown}` {state}; update the list")
 
 
 def read(folder: Path = LISTS) -> list[Mutant]:
-    """All mutants of all lists, in the order of the lists' names.
+    """Return all mutants of all lists, in the order of the lists' names.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def read(folder: Path = LISTS) -> list[Mutant]:
                 mutants.append(_made(len(mutants) + 1, path, entry, each))
     again = {(each.path, each.line, each.was, each.becomes) for each in mutants}
     if len(again) != len(mutants):
-        raise MutantError("the same mutant stands twice in the lists")
+        raise MutantError("the same mutant is twice in the lists")
     return mutants
 
 
@@ -124,7 +124,7 @@ def _made(number: int, path: Path, entry: dict[str, Any], each: dict[str, Any]) 
         raise MutantError(f"{path.name}: no expression or statement of its own: {each}")
     checks, tests = ([*each.get(key, ()), *entry.get(key, ())] for key in ("checks", "tests"))
     if not checks and not tests:
-        raise MutantError(f"{path.name}: nothing is to notice {each}")
+        raise MutantError(f"{path.name}: no check or test is named for {each}")
     return Mutant(
         number=number,
         room=path.stem,
@@ -140,7 +140,7 @@ def _made(number: int, path: Path, entry: dict[str, Any], each: dict[str, Any]) 
 
 
 def _whole(text: str) -> bool:
-    """Whether C++ may put it in brackets: a list that does not compile is found in minutes, this at once."""
+    """Whether C++ allows brackets around it. This is checked at once; the compiler would need minutes."""
     closed = all(text.count(opening) == text.count(closing) for opening, closing in _BRACKETS)
     return closed and not text.startswith(_OF_TWO_SIDES)
 
@@ -151,12 +151,12 @@ def _known(entry: dict[str, Any], fields: set[str], path: Path) -> None:
 
 
 def check_places(mutants: list[Mutant], root: Path = REPOSITORY) -> None:
-    """Every mutant's text is where it should be.
+    """Check that every mutant's text is in its place.
 
     Raises
     ------
     MutantError
-        Names all that are not.
+        Names all mutants that are not.
     """
     lost = []
     for each in mutants:

@@ -1,4 +1,4 @@
-"""Verdicts of earlier runs, in the repository: a changed line has none, a changed test asks for another trial."""
+"""Verdicts of earlier runs. A changed line loses its verdict; a changed test requires another trial."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _DIGITS = 12
 
 
 class Kept:
-    """Verdicts in one file for each list, which is written after each, so that an interrupted run loses none.
+    """Verdicts in one file per list, written after each trial, so that an interrupted run loses none.
 
     Parameters
     ----------
     folder : Path
-        Of the files; a row that cannot be read holds nothing.
+        Folder of the files; a row that cannot be read counts as missing.
     mutants : sequence of Mutant
-        All of the lists: what is kept of others goes with the next that is added.
+        All of the lists: verdicts of other mutants are removed when the next one is added.
     root : Path
         The sources.
     """
@@ -42,11 +42,11 @@ class Kept:
                         self._rows[named[row[0]]] = row[1], _verdict(named[row[0]], row)
 
     def find(self, mutants: Sequence[Mutant]) -> list[Verdict]:
-        """The verdicts of lines that are as they were, in the mutants' order."""
+        """Return the verdicts of unchanged lines, in the mutants' order."""
         return [self._rows[each][1] for each in mutants if each in self._rows]
 
     def current(self, mutants: Sequence[Mutant]) -> list[Verdict]:
-        """Those of them whose file and tests, too, are as they were."""
+        """Return those with an unchanged file and unchanged tests."""
         return [
             self._rows[each][1]
             for each in mutants
@@ -54,7 +54,7 @@ class Kept:
         ]
 
     def add(self, verdict: Verdict) -> None:
-        """Keep one more."""
+        """Store one more verdict."""
         room = verdict.mutant.room
         self._rows[verdict.mutant] = self._files(verdict.mutant), verdict
         self._folder.mkdir(parents=True, exist_ok=True)
@@ -70,7 +70,7 @@ class Kept:
         written.replace(path)
 
     def _files(self, mutant: Mutant) -> str:
-        """A digest of the changed file, and of what should notice."""
+        """Return a digest of the changed file, and of the tests that should notice."""
         seen = hashlib.sha256("\0".join((*mutant.checks, *mutant.tests)).encode())
         files = [mutant.path, *(name.partition("::")[0] for name in mutant.tests)]
         if mutant.checks:
@@ -88,7 +88,7 @@ class Kept:
 
 
 def _name(mutant: Mutant) -> str:
-    """A digest of the change: with its text, its verdict goes."""
+    """Return a digest of the change, so that another text has no verdict."""
     parts = (mutant.room, mutant.path, mutant.line, mutant.was, mutant.becomes)
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:_DIGITS]
 

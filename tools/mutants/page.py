@@ -1,4 +1,4 @@
-"""What the mutants showed, as a part of the page of measured results."""
+"""Results of the mutants, as a part of the page of measured results."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PART = Part(
 
 
 def complaints(verdicts: Sequence[Verdict]) -> list[str]:
-    """Why the lists do not pass."""
+    """Return the reasons why the lists do not pass."""
     said = [f"survived: {each.mutant}" for each in _left(verdicts) if not each.mutant.justified]
     said += [
         f"justified, and yet it dies by {each.by}: {each.mutant}"
@@ -38,7 +38,7 @@ def _left(verdicts: Sequence[Verdict]) -> list[Verdict]:
 
 
 def summary(verdicts: Sequence[Verdict]) -> str:
-    """One line of counts."""
+    """Return one line of counts."""
     left = _left(verdicts)
     justified = sum(bool(each.mutant.justified) for each in left)
     return (
@@ -48,14 +48,14 @@ def summary(verdicts: Sequence[Verdict]) -> str:
 
 
 def written(verdicts: Sequence[Verdict], mutants: Sequence[Mutant]) -> str:
-    """The part of the page.
+    """Return the part of the page.
 
     Parameters
     ----------
     verdicts : sequence of Verdict
-        Of all mutants that were tried.
+        Verdicts of all tried mutants.
     mutants : sequence of Mutant
-        Those and the others.
+        All mutants, tried or not.
     """
     tried = {each.mutant for each in verdicts}
     named = [each for each in verdicts if each.mutant.named]

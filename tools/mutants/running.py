@@ -1,4 +1,4 @@
-"""Mutants tried one by one in forked processes, each with the tests that should notice it."""
+"""Trials of mutants one by one in forked processes, each with the tests that should notice it."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from pathlib import Path
 
 from mutants.catalogue import REPOSITORY, Mutant, MutantError
 
-# Imported once, before the forks: what tests use and what no mutant changes.
+# Imported once, before the forks: modules that tests use and no mutant changes.
 _BEFORE = ["numpy", "pytest", "pandas", "scipy.optimize", "scipy.stats", "tomlkit", "can"]
-_PATIENCE = 8.0  # times as long as without a mutant
-_LEAST = 60.0  # [s]: the shortest time after which a mutant does not end
+_PATIENCE = 8.0  # times the duration without a mutant
+_LEAST = 60.0  # [s]: the shortest limit on the time of a trial
 _NO_TEST, _HIDDEN = 5, 70
 _FIRST = re.compile(r"^(?:FAILED|ERROR) ([^\s]+)|^FAILED +[\d.]+ s +(.*)$", re.MULTILINE)
 _POLL = 0.02  # [s]
@@ -29,7 +29,7 @@ _POLL = 0.02  # [s]
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """What became of a mutant.
+    """Outcome of one mutant.
 
     Attributes
     ----------
@@ -39,9 +39,9 @@ class Verdict:
     by : str
         The first test that failed.
     seconds : float
-        How long it took.
+        Duration of the trial [s].
     date : str
-        The day.
+        Day of the trial.
     """
 
     mutant: Mutant
@@ -69,18 +69,18 @@ class _Running:
 
 
 class Trials:
-    """Workers, each with a package of its own, in which one file at a time is changed.
+    """Workers with one package each, in which one file at a time is changed.
 
     Parameters
     ----------
     packages : sequence of Path
-        As many as processes at a time; each holds `jointid`.
+        One per parallel process; each holds `jointid`.
     core_check : Path or None
         The program of the core's checks, with all mutants in it.
     logs : Path
-        What each trial said.
+        Folder for the output of each trial.
     quick : bool, default False
-        Without tests that are marked slow.
+        Skip tests that are marked slow.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Trials:
         told: Callable[[str], object] = print,
         ended: Callable[[Verdict], object] = lambda _: None,
     ) -> list[Verdict]:
-        """Try every mutant, after the program as it is; `ended` gets each verdict at once.
+        """Try the unchanged program, then every mutant; `ended` gets each verdict at once.
 
         Raises
         ------
@@ -167,7 +167,7 @@ class Trials:
         return self._quick and code == _NO_TEST
 
     def _each(self, tasks: Iterable[_Task]) -> Iterator[tuple[_Task, int, float, Path]]:
-        """Each task's exit code, seconds and log, as they end; 0 is passed, negative a signal."""
+        """Yield each task's exit code, seconds and log as it ends; 0 is passed, negative a signal."""
         waiting, running = list(tasks)[::-1], dict[int, _Running]()
         try:
             while waiting or running:
@@ -201,7 +201,7 @@ class Trials:
 
     def _end(self, ended: _Running, code: int) -> tuple[_Task, int, float, Path]:
         seconds = time.monotonic() - ended.began
-        # What a test started and did not end must not meet the next mutant.
+        # A process that a test started and did not end must not meet the next mutant.
         with suppress(ProcessLookupError):
             os.killpg(ended.child, signal.SIGKILL)
         mutant = ended.task.mutant
@@ -240,7 +240,7 @@ def _in_the_child(
             if subprocess.run([core_check, part], check=False).returncode:
                 return 1
         return _tested(task.tests, package, quick) if task.tests else 0
-    except BaseException as error:  # the parent's code must not go on here
+    except BaseException as error:  # the parent's code must not continue here
         os.write(2, repr(error).encode())
         return 1
 
@@ -264,7 +264,7 @@ def _tested(tests: tuple[str, ...], package: Path, quick: bool) -> int:
 
 
 def _said(code: int, log: Path) -> str:
-    """The first that failed, or why none did."""
+    """Return the first test that failed, or the reason why none did."""
     if code == -signal.SIGKILL:
         return "did not end"
     if code == _NO_TEST:

@@ -1,4 +1,4 @@
-"""C++ in which all mutants stand side by side, and a number chooses one at run time."""
+"""C++ sources with all mutants, of which a number chooses one at run time."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mutants.catalogue import Mutant, MutantError
 
-# `const`: the answer depends on the number alone, so loops may ask once.
+# `const`: the answer depends only on the number, so loops may ask once.
 _DECLARED = "[[gnu::const]] bool jointid_mutant(int number) noexcept;"
 SWITCH = f"""#include <cstdlib>
 
@@ -23,10 +23,10 @@ _CONSTANT = re.compile(r"\bconstexpr\b")
 
 
 def switched(text: str, mutants: list[Mutant]) -> str:
-    """The file's text with a switch at each mutant's place.
+    """Return the file's text with a switch at each mutant's place.
 
-    An expression becomes `(jointid_mutant(N) ? (new) : (old))`; what ends in a semicolon, `if` and `else`. A constant
-    is no longer one of the compiler's.
+    An expression becomes `(jointid_mutant(N) ? (new) : (old))`; a statement becomes `if` and `else`. A constant is no
+    longer known to the compiler.
 
     Raises
     ------
@@ -36,7 +36,7 @@ def switched(text: str, mutants: list[Mutant]) -> str:
     spans = sorted(((*each.place(text), each) for each in mutants), key=lambda s: (s[0], -s[1]))
     for begin, _, _ in spans:
         statement = max(text.rfind(end, 0, begin) for end in ";{}") + 1
-        # As long as it was: places stay.
+        # The length stays the same, so places stay.
         plain = _CONSTANT.sub("const    ", text[statement:begin])
         text = text[:statement] + plain + text[begin:]
     return f"{_DECLARED}\n#line 1\n{_rewritten(text, 0, len(text), spans)}"
@@ -74,13 +74,15 @@ def write(tree: Path, mutants: list[Mutant]) -> None:
     (tree / "cpp" / "jointid_mutant.cpp").write_text(SWITCH, encoding="utf-8")
     build = tree / "CMakeLists.txt"
     text = build.read_text(encoding="utf-8")
-    # The compiler takes longer than the trials: half of it, for the same bits.
+    # Compiling takes longer than the trials. This halves its time, with the same bits.
     changes = {
         "add_library(core STATIC)": "add_library(core STATIC cpp/jointid_mutant.cpp)",
         ":-O3>": ":-O1>",
     }
     for old, new in changes.items():
         if text.count(old) != 1:
-            raise MutantError(f"CMakeLists.txt: `{old}` is not there once; adapt {__name__}")
+            raise MutantError(
+                f"CMakeLists.txt: `{old}` does not occur exactly once; adapt {__name__}"
+            )
         text = text.replace(old, new)
     build.write_text(text, encoding="utf-8")

@@ -1,4 +1,4 @@
-"""A copy of the repository whose core has all mutants, and one of the package for each worker."""
+"""A copy of the repository with all mutants in its core, and a copy of the package for each worker."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ def built_core(folder: Path, mutants: list[Mutant], jobs: int) -> tuple[Path, Pa
     Parameters
     ----------
     folder : Path
-        Sources and objects go there, and stay: a second build compiles what has changed.
+        For sources and objects, which stay: a second build compiles only changes.
     mutants : list of Mutant
-        Those in C++.
+        The mutants in C++.
     jobs : int
-        Compilers at a time.
+        Number of compilers in parallel.
 
     Raises
     ------
     MutantError
-        If it does not compile; with the compiler's errors.
+        If it does not compile. Contains the compiler's errors.
     """
     sources, objects = folder / "sources", folder / "objects"
     made = folder / "made"
@@ -54,9 +54,11 @@ def built_core(folder: Path, mutants: list[Mutant], jobs: int) -> tuple[Path, Pa
     ]
     setup += ["-DCMAKE_BUILD_TYPE=Release", f"-DPython_EXECUTABLE={sys.executable}"]
     setup += [f"-Dpybind11_DIR={_pybind11()}", f"-DSKBUILD_PROJECT_VERSION={_version()}"]
-    setup.append("-DJOINTID_BUILD_EXTENSION=ON")  # with the checks: the core is compiled once
+    setup.append(
+        "-DJOINTID_BUILD_EXTENSION=ON"
+    )  # together with the checks, so that the core is compiled once
     build: list[str | Path] = ["cmake", "--build", objects, "--parallel", str(jobs)]
-    build += ["--", "-k", "0"]  # all errors at once
+    build += ["--", "-k", "0"]  # show all errors at once
     for command in (setup, build):
         done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
         if done.returncode:
@@ -80,7 +82,7 @@ def _pybind11() -> str:
 
 
 def _keep_times(made: Path, sources: Path) -> None:
-    """Bring a copy up to date, and leave files alone that have not changed: they need no compiler."""
+    """Update a copy, without touching unchanged files, so that they need no compiler."""
     wanted = {path.relative_to(made) for path in made.rglob("*") if path.is_file()}
     for path in sources.rglob("*") if sources.exists() else ():
         if path.is_file() and path.relative_to(sources) not in wanted:
@@ -95,9 +97,9 @@ def _keep_times(made: Path, sources: Path) -> None:
 
 
 def package(folder: Path, extension: Path) -> Path:
-    """A copy of the package with that core, where one worker may change a file.
+    """Make a copy of the package with that core, in which one worker may change a file.
 
-    The data of examples lie beside an installed package, and are copied, too.
+    The data of examples are next to an installed package, and are copied, too.
     """
     shutil.rmtree(folder, ignore_errors=True)
     shutil.copytree(
@@ -111,7 +113,7 @@ def package(folder: Path, extension: Path) -> Path:
 
 
 def installed_core() -> Path:
-    """The extension that is installed, or lies in the checkout."""
+    """Return the installed extension, or the one in the checkout."""
     script = "import jointid._core as core; print(core.__file__)"
     done = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=False, cwd="/"

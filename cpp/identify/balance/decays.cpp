@@ -14,15 +14,16 @@ namespace jointid::identify {
 
 namespace {
 
-// Rates side by side: the lanes of a vector. Windows hold some ten samples, too few to sum along.
+// Several rates in parallel, in the lanes of a vector. Windows hold some ten samples, which is too
+// few for lanes along the samples.
 constexpr std::size_t kLanes = 8;
 
 JOINTID_CLONES void squares(const double* speed, std::size_t count, double* x) {
   for (std::size_t i = 0; i < count; ++i) x[i] = speed[i] * speed[i];
 }
 
-// Arguments of at most some hundreds, where exp needs no care; a speed of 0 has the logarithm
-// -infinity and the power 0.
+// Arguments are at most some hundreds, so exp needs no special cases. A speed of 0 has the
+// logarithm -infinity and the power 0.
 JOINTID_CLONES void powers(const double* speed, double exponent, std::size_t count, double* x) {
   for (std::size_t i = 0; i < count; ++i) {
     const double logarithm = base::log_normal(speed[i] > 0.0 ? speed[i] : 1.0);
@@ -30,17 +31,17 @@ JOINTID_CLONES void powers(const double* speed, double exponent, std::size_t cou
   }
 }
 
-constexpr std::size_t kNodes = 12;  // of a run, at most; three vectors of four
+constexpr std::size_t kNodes = 12;  // largest number in a run; three vectors of four
 constexpr std::size_t kDegree = 24;
 
-/// Neighbouring nodes of a window, whose speeds are alike: weight exp(-rate x) is summed over them
-/// by Taylor's series about the middle of their range, one exponential for all of them.
+/// Neighbouring nodes of a window with similar speeds. Taylor's series about the middle of their
+/// range sums weight exp(-rate x) over them, with one exponential for all nodes.
 struct Run {
   std::size_t begin;
   std::size_t end;
   double middle;
-  double half;                              ///< of the range of x
-  double least;                             ///< x
+  double half;                              ///< half the range of x
+  double least;                             ///< smallest x
   std::array<double, kDegree + 1> moments;  ///< sums of weight ((x - middle) / half)^j / j!
 };
 
@@ -50,8 +51,8 @@ constexpr std::array<double, kDegree + 1> kInverseFactorials = [] {
   return result;
 }();
 
-/// As many terms as leave y^(d+1) / (d+1)! below 2^-54, beside the largest decay of a run; kNone
-/// where there are not that many.
+/// The number of terms that leaves y^(d+1) / (d+1)! below 2^-54, relative to the largest decay of a
+/// run; kNone if there are not enough terms.
 constexpr std::size_t kNone = kDegree + 1;
 std::size_t degree_at(double y) {
   if (y <= 5.8e-3) return 5;
@@ -61,12 +62,12 @@ std::size_t degree_at(double y) {
   return y <= 2.5 ? kDegree : kNone;
 }
 
-/// The moments up to `degree`: the series of no group of rates has more terms.
+/// The moments up to `degree`, which is the highest degree of any group of rates.
 JOINTID_CLONES void take_moments(const double* x, const double* weight, std::size_t degree,
                                  Run& run) {
   std::array<double, kNodes> place{};
   std::array<double, kNodes> power{};
-  // A range that is next to nothing has no inverse; its nodes lie in the middle.
+  // A vanishing range has no inverse; its nodes lie in the middle.
   const double scale = run.half > 1e-300 ? 1.0 / run.half : 0.0;
   for (std::size_t i = 0; i < run.end - run.begin; ++i) {
     place[i] = (x[run.begin + i] - run.middle) * scale;
@@ -85,7 +86,7 @@ JOINTID_CLONES void take_moments(const double* x, const double* weight, std::siz
   }
 }
 
-/// The runs of windows; `first` counts from first[0]. `fastest` is the largest rate of all.
+/// Divides windows into runs; `first` counts from first[0]. `fastest` is the largest of all rates.
 std::vector<Run> runs_of(const std::vector<double>& x, const double* weight,
                          const std::size_t* first, std::size_t windows, double fastest,
                          std::vector<std::size_t>& first_run) {
@@ -119,7 +120,7 @@ struct Lanes {
   std::array<double, kLanes> rates;
   std::size_t count;
   double fastest;    ///< the largest |rate|
-  double vanishing;  ///< x from which all of them vanish
+  double vanishing;  ///< x from which all decays vanish
 };
 
 /// The series at y, without a loop: the loop over the lanes must vectorise.
@@ -144,8 +145,8 @@ template <std::size_t Degree>
   }
 }
 
-/// For every window w, sums[w + lane * stride] = sum of weight exp(-rates[lane] x), but for runs
-/// whose decays vanish.
+/// For every window w, sums[w + lane * stride] = sum of weight exp(-rates[lane] x), except for runs
+/// with vanishing decays.
 JOINTID_CLONES void window_sums(const double* x, const double* weight, const Run* runs,
                                 const std::size_t* first_run, std::size_t windows,
                                 const Lanes& lanes, double* sums, std::size_t stride) {

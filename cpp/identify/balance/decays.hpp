@@ -1,8 +1,8 @@
 #pragma once
 // The columns of decaying friction for many shapes at once, over a stretch of windows.
 //
-// Both decays are exp(-rate * x) with x = v^2 and rate = s for the Gaussian (4-1), x = v^d and
-// rate = v_s^-d for the general one (2-3): what depends on the speed alone is computed once for all
+// Both decays are exp(-rate * x). The Gaussian decay (4-1) has x = v^2 and rate = s, the general
+// one (2-3) x = v^d and rate = v_s^-d. So x depends only on the speed and is computed once for all
 // rates.
 
 #include <Eigen/Core>
@@ -25,7 +25,7 @@ struct DecayRates {
   std::vector<double> rates;
 };
 
-/// One column a rate (windows x rates).
+/// One column per rate (windows x rates).
 void integrate_decays(const FrictionNodes& nodes, const Stretch& windows, const DecayRates& group,
                       const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns);
 

@@ -11,10 +11,11 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kShort = 256;    // samples of a window whose nodes are made at once
-constexpr std::size_t kStored = 1024;  // nodes that are stored at once
+constexpr std::size_t kShort =
+    256;  // largest number of samples in a window whose nodes are made in one loop
+constexpr std::size_t kStored = 1024;  // size of the buffer for nodes
 
-/// Nodes of a whole window in which the velocity keeps one sign: the same without a question a
+/// Nodes of a whole window in which the velocity keeps one sign: the same without a check per
 /// sample.
 JOINTID_CLONES void whole_nodes(const double* time, const double* velocity, std::size_t count,
                                 double direction, double* speeds, double* weights) {
@@ -50,7 +51,7 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
                   std::span<const Window> windows, FrictionNodes& nodes) {
   std::array<double, kStored> speeds;
   std::array<double, kStored> weights;
-  std::size_t made = 0;  // nodes that wait in the two
+  std::size_t made = 0;  // nodes that wait in the two buffers
   const auto store = [&] {
     nodes.speed.insert(nodes.speed.end(), speeds.begin(), speeds.begin() + made);
     nodes.weight.insert(nodes.weight.end(), weights.begin(), weights.begin() + made);
@@ -70,7 +71,7 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
       continue;
     }
     store();
-    double carried = 0.0;  // weight that the previous interval left on this interval's first sample
+    double carried = 0.0;  // weight of this interval's first sample from the previous interval
     const auto push = [&](double speed, double weight) {
       if (weight == 0.0) return;
       nodes.speed.push_back(speed);
@@ -86,7 +87,7 @@ void append_nodes(const RecordingView& r, const std::vector<std::uint8_t>& usabl
       }
       const double half = 0.5 * (r.time[k + 1] - r.time[k]);
       const auto [before, after] = shares(v0, v1);
-      if (v0 * v1 < 0.0) {  // a node either side of rest, so that each direction keeps its own
+      if (v0 * v1 < 0.0) {  // a node on either side of rest, one for each direction
         push(0.0, half * before);
         push(0.0, half * after);
       }

@@ -14,14 +14,15 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kNodesAtOnce = 2048;  // nodes: two buffers stay in the first-level cache
+constexpr std::size_t kNodesAtOnce =
+    2048;  // nodes per block: two buffers fit the first-level cache
 
 JOINTID_CLONES void log_speeds(const double* speed, std::size_t count, double* logarithm) {
   for (std::size_t i = 0; i < count; ++i) logarithm[i] = model::log_speed(speed[i]);
 }
 
-// A block's weighted values of a decay, and its weighted derivatives where asked for (by_* not
-// null). Spelt out for each basis: these loops must vectorise.
+// A block's weighted values of a decay, and its weighted derivatives if requested (by_* not null).
+// Written separately for each basis, because these loops must vectorise.
 JOINTID_CLONES void stribeck_values(double shape, const double* speed, const double* weight,
                                     std::size_t count, double* value) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -64,7 +65,7 @@ JOINTID_CLONES void general_slopes(const GeneralShapes& shapes, const double* lo
   }
 }
 
-/// A block's logarithms: those of the nodes, or `made` now.
+/// A block's logarithms: the stored ones, or computed now into `made`.
 const double* logarithms(const FrictionNodes& nodes, std::size_t begin, std::size_t count,
                          std::array<double, kNodesAtOnce>& made) {
   if (!nodes.logarithm.empty()) return nodes.logarithm.data() + begin;
@@ -72,7 +73,7 @@ const double* logarithms(const FrictionNodes& nodes, std::size_t begin, std::siz
   return made.data();
 }
 
-/// Sums `Columns` weighted values of each node window by window; `fill` gives a block of them.
+/// Sums `Columns` weighted values of each node by windows; `fill` computes a block of them.
 template <std::size_t Columns, class Fill>
 void sum_nodes(const FrictionNodes& nodes, const base::Cancel* cancel,
                Eigen::Ref<Eigen::MatrixXd> result, Fill fill) {
@@ -119,14 +120,14 @@ JOINTID_CLONES void signed_decays(const double* velocity, std::size_t count, dou
   }
 }
 
-/// A general decay whose exponent is 2 is a Gaussian one.
+/// A general decay with exponent 2 is a Gaussian one.
 bool is_gaussian(const Term& term, const double* shapes) {
   return term.basis == model::SpeedBasis::general && shapes[1] == 2.0;
 }
 
 double gaussian_rate(const double* shapes) {
   const double rate = 1.0 / (shapes[0] * shapes[0]);
-  return std::min(rate, std::numeric_limits<double>::max());  // times the speed 0 it is 0
+  return std::min(rate, std::numeric_limits<double>::max());  // times the speed 0, the product is 0
 }
 
 }  // namespace
@@ -222,7 +223,7 @@ void integrate_slopes(const Term& term, const FrictionNodes& nodes, const double
   sum_nodes<3>(nodes, cancel, columns, [&](std::size_t begin, std::size_t count, auto& value) {
     general_slopes(both, logarithms(nodes, begin, count, made), weight + begin, count,
                    value[0].data(), value[1].data(), value[2].data());
-    if (is_gaussian(term, shapes)) {  // the bits of integrate_friction
+    if (is_gaussian(term, shapes)) {  // gives the same bits as integrate_friction
       stribeck_values(gaussian_rate(shapes), speed + begin, weight + begin, count, value[0].data());
     }
   });

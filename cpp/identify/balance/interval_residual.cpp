@@ -17,12 +17,12 @@ namespace {
 
 using Samples = std::array<double, kMostIntervals + 1>;
 
-constexpr std::size_t kTogether = 64;  // samples that may all be too fast for a decay
+constexpr std::size_t kTogether = 64;  // samples per check whether all are too fast for a decay
 
 /// A friction's coefficient in each direction of motion.
 struct Sides {
   double forward;
-  double backward;  ///< of the signed friction: below 0 where it opposes the motion
+  double backward;  ///< of the signed friction: below 0 if it opposes the motion
 };
 
 Sides sides_of(const KnownTerm& known) {
@@ -69,13 +69,13 @@ JOINTID_CLONES void add_scaled(const double* signal, std::size_t count, double f
   for (std::size_t i = 0; i < count; ++i) sum[i] += factor * signal[i];
 }
 
-/// Takes away what a signal's change over each interval contributes.
+/// Subtracts the contribution of a signal's change over each interval.
 JOINTID_CLONES void take_changes(const double* signal, std::size_t count, double factor,
                                  double* result) {
   for (std::size_t i = 0; i < count; ++i) result[i] -= factor * (signal[i + 1] - signal[i]);
 }
 
-/// Takes away the trapezoids of two sums at the samples.
+/// Subtracts the trapezoids of two sums at the samples.
 JOINTID_CLONES void take_trapezoids(const double* one, const double* other, const double* time,
                                     std::size_t count, double* result) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -89,7 +89,7 @@ JOINTID_CLONES void hold(const double* torque, const double* time, std::size_t c
   for (std::size_t i = 0; i < count; ++i) result[i] = torque[i] * (time[i + 1] - time[i]);
 }
 
-/// Adds a friction at the samples, and to `at_rest` what it is just off rest.
+/// Adds a friction at the samples, and its value just above zero speed to `at_rest`.
 void add_friction(const KnownTerm& known, const double* velocity, std::size_t count, double* sum,
                   Sides& at_rest) {
   const auto [forward, backward] = sides_of(known);
@@ -125,13 +125,13 @@ void add_friction(const KnownTerm& known, const double* velocity, std::size_t co
   at_rest.backward += rest * backward;
 }
 
-/// Makes up for the trapezoids of friction where the joint reverses within an interval: there it
-/// changes its side at the zero crossing.
+/// Corrects the trapezoids of friction where the joint reverses within an interval: there friction
+/// changes its sign at the zero crossing.
 void part_reversals(const double* velocity, const double* time, const double* friction,
                     std::size_t count, const Sides& at_rest, double* result) {
   for (std::size_t i = 0; i < count;) {
     const std::size_t run = base::one_sided(velocity + i, count + 1 - i);
-    if (run == 0) {  // at rest, where friction is 0 on the interval's end
+    if (run == 0) {  // at rest, where friction is 0 at the interval's end
       ++i;
       continue;
     }

@@ -1,6 +1,6 @@
 #pragma once
-// The torque balance at known coefficients and shapes, sample interval by sample interval: what the
-// terms leave of the torque. For windows of few samples it is cheaper than a column a term.
+// The residual of the torque balance at known coefficients and shapes, for each sample interval.
+// For windows of few samples this is cheaper than one column per term.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -14,15 +14,15 @@
 
 namespace jointid::identify {
 
-/// A term of a balance whose parameters are known.
+/// A term of a balance with known parameters.
 struct KnownTerm {
   Term term;
   double coefficient;
   Eigen::VectorXd shapes;
 };
 
-/// Integral of the torque less the terms over each window's usable intervals; friction as
-/// `integrate_friction` does it. None of the terms may be load friction.
+/// Integral of the torque minus the terms over each window's usable intervals. Friction is
+/// integrated as in `integrate_friction`. No term may be load friction.
 void integrate_residual(const std::vector<KnownTerm>& terms, double gear_ratio,
                         const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                         std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);

@@ -14,11 +14,11 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kIntervals = 1024;  // intervals whose values are made at once
+constexpr std::size_t kIntervals = 1024;  // intervals per block of values
 
 /// Adds values one after the other.
 double add_all(double sum, const double* value, const double* end) {
-  for (; end - value >= 4; value += 4) {  // fewer steps of the loop; the order stays
+  for (; end - value >= 4; value += 4) {  // fewer loop steps; the order of the sum stays
     sum += value[0];
     sum += value[1];
     sum += value[2];
@@ -28,8 +28,8 @@ double add_all(double sum, const double* value, const double* end) {
   return sum;
 }
 
-/// Sum over a window's usable intervals of values that `fill(k, count, values)` gives for the
-/// intervals from k on.
+/// Sums, over a window's usable intervals, the values that `fill(k, count, values)` computes for
+/// the intervals from k on.
 template <class Fill>
 void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                    Eigen::Ref<Eigen::VectorXd> result, Fill fill) {
@@ -38,7 +38,7 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
   std::array<double, kIntervals> values;
   const std::int64_t last = windows.back().end;
   std::int64_t from = 0;
-  std::int64_t to = 0;  // of the intervals in `values`
+  std::int64_t to = 0;  // range of the intervals in `values`
   const auto sum_of = [&](const Window& window, bool all) {
     double sum = 0.0;
     for (auto k = window.begin; k < window.end;) {
@@ -65,7 +65,7 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
     result[static_cast<Eigen::Index>(w)] = sum_of(windows[w], all);
     const Window* next = windows.data() + ++w;
     if (!all) continue;
-    // Short windows are many: those of the same run whose values are there, without a question.
+    // Short windows are numerous. Windows in one usable run with computed values need no checks.
     const std::int64_t until = std::min(to, whole.until());
     double* sum = result.data() + w;
     for (; w < windows.size() && next->end <= until && next->begin >= from; ++w, ++next, ++sum) {
@@ -74,7 +74,7 @@ void sum_intervals(const std::vector<std::uint8_t>& usable, std::span<const Wind
   }
 }
 
-/// Of signals between samples: by the trapezoid rule, and held.
+/// Integrals of signals between samples: by the trapezoidal rule, or held.
 JOINTID_CLONES void trapezoids(const double* signal, const double* time, std::size_t count,
                                double* values) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -91,7 +91,7 @@ JOINTID_CLONES void middles(const double* velocity, std::size_t count, double* m
   for (std::size_t i = 0; i < count; ++i) middle[i] = 0.5 * (velocity[i + 1] + velocity[i]);
 }
 
-/// By how much friction is above its straight line, by Simpson's rule; 0 over a reversal.
+/// Excess of friction over its straight line, by Simpson's rule; 0 over a reversal.
 JOINTID_CLONES void bends(const double* velocity, const double* time, const double* at,
                           const double* between, std::size_t count, double* values) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -113,7 +113,7 @@ void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uin
     if (whole(*window)) {
       const std::int64_t from = window->begin;
       const std::int64_t until = whole.until();
-      do {  // those of one run without a question
+      do {  // windows of one run need no checks
         *change++ = x[window->end] - x[window->begin];
         ++window;
       } while (window < behind && window->end <= until && window->begin >= from);
@@ -128,7 +128,7 @@ void sum_changes(const RecordingView::Signal& signal, const std::vector<std::uin
   }
 }
 
-/// The trapezoid rule for a function of the position.
+/// The trapezoidal rule for a function of the position.
 template <class Function>
 void integrate_position(const RecordingView& r, const std::vector<std::uint8_t>& usable,
                         std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result,
@@ -141,7 +141,7 @@ void integrate_position(const RecordingView& r, const std::vector<std::uint8_t>&
   });
 }
 
-/// The trapezoid rule for a signal.
+/// The trapezoidal rule for a signal.
 void integrate_signal(const RecordingView::Signal& signal, const RecordingView& r,
                       const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                       Eigen::Ref<Eigen::VectorXd> result) {
@@ -150,8 +150,8 @@ void integrate_signal(const RecordingView::Signal& signal, const RecordingView& 
   });
 }
 
-/// Coulomb friction of windows: the time it acts, signed. Those that are cut or hold a reversal are
-/// summed over their nodes.
+/// Coulomb friction of windows: the signed time of motion. Windows that are cut or hold a reversal
+/// are summed over their nodes.
 void integrate_sign(const Term& term, const RecordingView& r,
                     const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                     Eigen::Ref<Eigen::VectorXd> result) {
@@ -175,7 +175,7 @@ void integrate_sign(const Term& term, const RecordingView& r,
   }
 }
 
-/// The speed beyond which a term's decay is nothing beside 1; infinite without a decay.
+/// The speed beyond which a term's decay is negligible against 1; infinite without a decay.
 double vanished_beyond(const Term& term, const Eigen::VectorXd& shapes) {
   if (term.basis == model::SpeedBasis::gaussian) return std::sqrt(vanishing_at(shapes[0]));
   if (term.basis != model::SpeedBasis::general) return HUGE_VAL;
@@ -235,7 +235,7 @@ void integrate(const Term& term, double gear_ratio, const RecordingView& r,
     integrate_sign(term, r, usable, windows, result);
     return;
   }
-  // A few windows at a time: their nodes stay in the cache.
+  // A few windows at a time, so that their nodes stay in the cache.
   constexpr std::size_t kWindows = 64;
   FrictionNodes nodes;
   for (std::size_t w = 0; w < windows.size(); w += kWindows) {
@@ -290,7 +290,7 @@ void integrate_bending(const Term& term, const Eigen::VectorXd& shapes, const Re
     between = friction_basis(term, between, shapes);
     bends(velocity, r.time.data() + k, at.data(), between.data(), count, values);
   };
-  constexpr std::size_t kTogether = 64;  // intervals that may all be too fast for a decay
+  constexpr std::size_t kTogether = 64;  // intervals per check whether all are too fast for a decay
   sum_intervals(usable, windows, result, [&](std::int64_t k, std::size_t count, double* values) {
     for (std::size_t i = 0; i < count; i += kTogether) {
       part(k + static_cast<std::int64_t>(i), std::min(kTogether, count - i), values + i);

@@ -1,7 +1,7 @@
 #pragma once
 // Window integrals of the terms. Friction jumps where the velocity changes sign, so its integral is
-// a weighted sum over nodes: the samples (trapezoid), and in an interval with a reversal the zero
-// crossing of the interpolated velocity.
+// a weighted sum over nodes: the samples (trapezoidal rule) and, in an interval with a reversal,
+// the zero crossing of the interpolated velocity.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -16,38 +16,39 @@
 
 namespace jointid::identify {
 
-/// One integral a window, for every term without a shape and for the torque. A harmonic of the
-/// motor counts turns in front of the gear.
+/// One integral per window, for every term without a shape and for the torque. A harmonic of the
+/// motor counts revolutions in front of the gear.
 void integrate(const Term& term, double gear_ratio, const RecordingView& recording,
                const std::vector<std::uint8_t>& usable, std::span<const Window> windows,
                Eigen::Ref<Eigen::VectorXd> result);
 void integrate_torque(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
-/// What an own term of that name integrates to from the first sample to each. Throws
-/// std::invalid_argument where the recording has none.
+/// Integral of the own term with this name, from the first sample to each sample. Throws
+/// std::invalid_argument if the recording has none.
 const RecordingView::Signal& own_series(const RecordingView& recording, const std::string& name);
 
-/// Whether exp(-rate v^2) is nothing at all of some samples, at least one.
+/// Whether exp(-rate v^2) is 0 for all of these samples, at least one.
 bool has_vanished(double rate, const double* velocity, std::size_t count);
 
-/// How far the torque rises over each window's usable intervals.
+/// Rise of the torque over each window's usable intervals.
 void sum_torque_steps(const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                       std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
-/// By how much Simpson's rule, on a velocity that is straight between samples, exceeds the
-/// trapezoid's for a friction term with shapes: over each window's usable intervals without a
-/// reversal.
+/// Difference of Simpson's rule, with a velocity that is straight between samples, and the
+/// trapezoidal rule for a friction term with shapes. It covers each window's usable intervals
+/// without a reversal.
 void integrate_bending(const Term& term, const Eigen::VectorXd& shapes,
                        const RecordingView& recording, const std::vector<std::uint8_t>& usable,
                        std::span<const Window> windows, Eigen::Ref<Eigen::VectorXd> result);
 
-/// The friction column of a term for given shapes. `cancel` is read once a block of nodes; it may
+/// The friction column of a term for these shapes. `cancel` is read once per block of nodes; it may
 /// be null.
 void integrate_friction(const Term& term, const FrictionNodes& nodes, const double* shapes,
                         const base::Cancel* cancel, Eigen::Ref<Eigen::VectorXd> column);
 
-/// The same of a term with shapes, and behind it its derivative by each: windows x (1 + shapes).
+/// The same for a term with shapes, followed by its derivative by each shape: windows x (1 +
+/// shapes).
 void integrate_slopes(const Term& term, const FrictionNodes& nodes, const double* shapes,
                       const base::Cancel* cancel, Eigen::Ref<Eigen::MatrixXd> columns);
 

@@ -17,7 +17,7 @@ using model::SpeedBasis;
 constexpr const char* kLoads = "motion that drives a load and is driven by it, such as up and down";
 constexpr const char* kSlow = "slow motion through speeds near zero, in both directions";
 
-// A row made here is neither simulated nor accepted by controllers until `simulated` says so.
+// A new row is neither simulated nor accepted by controllers, unless `simulated` sets both.
 
 Term torque(std::string name, std::string option, Integral integral, std::string meaning,
             std::string advice) {
@@ -55,7 +55,7 @@ Term harmonic(std::string key, std::string option, Integral integral, Harmonic c
   return term;
 }
 
-/// A term of a signal that the recording brings along; its name follows the key.
+/// A term of a signal of the recording; its name follows the key.
 Term own(std::string key, std::string unit, std::string unit_prismatic, std::string meaning) {
   Term term = torque(std::move(key), "terms", Integral::own, std::move(meaning),
                      "motion in which this signal changes apart from the others");
@@ -82,7 +82,7 @@ Term directed(Term row, Direction direction) {
   return row;
 }
 
-/// The rows as written: friction in both directions at once.
+/// The written rows: friction in both directions.
 std::vector<Term> base_rows() {
   const std::string angles = "motion through a wider range of angles";
   const std::string turns = "motion through several turns of the motor";
@@ -186,7 +186,7 @@ std::vector<Term> base_rows() {
   };
 }
 
-/// Friction of the velocity alone has a row for each direction behind it.
+/// Each friction that depends only on the velocity is followed by one row per direction.
 std::vector<Term> make_terms() {
   std::vector<Term> table;
   for (auto& row : base_rows()) {
@@ -198,13 +198,13 @@ std::vector<Term> make_terms() {
   return table;
 }
 
-/// The number behind the last underscore, as written in a harmonic's key.
+/// The number after the last underscore of a harmonic's key.
 bool read_order(std::string_view text, double& order) {
   order = base::read_digits(text).value_or(0.0);
   return order > 0.0 && order < 1e6;
 }
 
-/// The signal's name behind an own row's key and an underscore; empty if there is none.
+/// The name of the signal after an own row's key and an underscore; empty if there is none.
 std::string_view signal_of(const Term& row, std::string_view key) {
   const auto size = row.key.size();
   if (!is_own(row) || key.size() < size + 2 || !key.starts_with(row.key) || key[size] != '_') {
@@ -265,7 +265,7 @@ const std::vector<Shape>& shape_table() {
        .meaning = "speed at which Coulomb friction has risen to 76 %",
        .advice = kSlow,
        .speed_power = 1.0},
-      // At 1 a joint locks by itself in one quadrant.
+      // At 1 a joint locks in one quadrant.
       {.name = "load_friction",
        .unit = "1",
        .unit_prismatic = "1",

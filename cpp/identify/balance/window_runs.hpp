@@ -1,5 +1,5 @@
 #pragma once
-// What holds for all of a window, known of a whole run of samples: many short windows lie in one.
+// Facts that hold for a whole run of samples, and so for the many short windows inside it.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace jointid::identify {
 
-/// Whether windows have usable intervals only. They come in order: what is known of one run of
-/// usable intervals serves all windows in it.
+/// Whether windows have only usable intervals. Windows come in order, so one known run of usable
+/// intervals serves all windows in it.
 class WholeWindows {
  public:
   WholeWindows(const std::vector<std::uint8_t>& usable, std::span<const Window> windows)
@@ -31,7 +31,7 @@ class WholeWindows {
     return window.end <= until_;
   }
 
-  /// Where the run of the last window asked for ends: the next ones are whole if they end before.
+  /// End of the known run: the next windows are whole if they end before it.
   [[nodiscard]] std::int64_t until() const { return until_; }
 
  private:
@@ -41,13 +41,13 @@ class WholeWindows {
   std::int64_t until_ = -1;  ///< the intervals from_ .. until_ - 1 are usable
 };
 
-/// Whether the velocity keeps one sign over a window, ends included. They come in order, too.
+/// Whether the velocity keeps one sign over a window, ends included. Windows come in order, too.
 class OneSided {
  public:
   OneSided(const RecordingView::Signal& velocity, std::span<const Window> windows)
       : velocity_(velocity.data()), last_(windows.empty() ? 0 : windows.back().end) {}
 
-  /// The sign, or 0.
+  /// The sign, or 0 if it changes.
   double operator()(const Window& window) {
     if (window.begin < from_ || window.begin >= until_) {
       from_ = window.begin;

@@ -14,18 +14,18 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr double kTolerance = 1e-14;  // of the shaped columns' squared size
+constexpr double kTolerance = 1e-14;  // share of the shaped columns' squared norm
 constexpr int kAttempts = 3;
 constexpr double kDenser = 1.4;
 constexpr int kDegree = 11;
-constexpr std::size_t kWidest = 512;   // functions of a table, and rows
-constexpr Eigen::Index kBatch = 4096;  // candidates between two looks at the clock
+constexpr std::size_t kWidest = 512;   // most functions of a table, and most rows
+constexpr Eigen::Index kBatch = 4096;  // candidates between two polls
 constexpr std::size_t kLanes = ShapeTable::kLanes;
 
-/// What the inner loop needs, as plain numbers.
+/// Data of the inner loop as plain numbers.
 struct View {
   const ShapeTable* table;
-  const double* triangle;  ///< padded rows, column by column; the target last
+  const double* triangle;  ///< padded rows by columns; the target is last
   std::size_t rows;
   std::size_t padded;
   const Eigen::Index* constant;
@@ -72,8 +72,8 @@ JOINTID_CLONES void penalties_of(const View& view, const double* theta, Eigen::I
   for (Eigen::Index i = 0; i < count; ++i) penalties[i] = penalty_of(view, theta + i * stride);
 }
 
-/// The transposed Cholesky factor of the remainders' inner products, zero where they vanish, and
-/// its derivative when `slope` is given (their derivatives).
+/// The transposed Cholesky factor of the inner products of the remainders, zero where they vanish.
+/// With `slope`, which holds the derivatives of the inner products, also the factor's derivative.
 Eigen::MatrixXd root_of(const double* products, Eigen::Index size, const double* slope,
                         Eigen::MatrixXd* derivative) {
   const auto square = [&](const double* from) {
@@ -91,7 +91,7 @@ Eigen::MatrixXd root_of(const double* products, Eigen::Index size, const double*
   }
   const Eigen::MatrixXd& lower = *factor;
   if (slope != nullptr) {
-    // dL = L F(L^-1 dG L^-T), F the lower triangle with half the diagonal.
+    // dL = L F(L^-1 dG L^-T), where F takes the lower triangle with half the diagonal.
     const Eigen::MatrixXd left = base::solve_lower(lower, square(slope));
     Eigen::MatrixXd both = base::solve_lower(lower, left.transpose());
     both.diagonal() *= 0.5;
@@ -173,8 +173,9 @@ void CompressedPenalty::compare(const Eigen::MatrixXd& found, const Eigen::Matri
   exact_ = error_ <= kTolerance;
   reason_ = exact_ ? ""
                    : "the shapes' functions could not be interpolated to " +
-                         base::with_digits(kTolerance, 2) + ": " + base::with_digits(error_, 2) +
-                         " is left after " + std::to_string(passes_) + " shapes";
+                         base::with_digits(kTolerance, 2) + ": an error of " +
+                         base::with_digits(error_, 2) + " is left after " +
+                         std::to_string(passes_) + " shapes";
 }
 
 void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes, const Digest& whole) {
@@ -183,13 +184,13 @@ void CompressedPenalty::assemble(const std::optional<ShapeNodes>& nodes, const D
   if (!nodes) return;
   const Eigen::MatrixXd functions = functions_of(whole);
   passes_ = functions.cols();
-  // The probes tell how far the table is off between the nodes.
+  // The probes give the error of the table between the nodes.
   const auto probes = static_cast<Eigen::Index>(nodes->probes.size());
   const Eigen::MatrixXd at_nodes = functions.leftCols(functions.cols() - probes);
   table_.emplace(nodes->axis, at_nodes, kDegree);
   const auto size = static_cast<Eigen::Index>(shaped_.size()) * rows_;
   const auto products = at_nodes.bottomRows(at_nodes.rows() - size).cwiseAbs().colwise().sum();
-  // Squared size of the shaped columns.
+  // Squared norm of the shaped columns.
   const double scale = std::max(
       1e-300, at_nodes.topRows(size).colwise().squaredNorm().maxCoeff() + products.maxCoeff());
   Eigen::MatrixXd found(functions.rows(), probes);
@@ -303,7 +304,7 @@ void CompressedPenalty::evaluate(const Eigen::MatrixXd& candidates, Eigen::Vecto
                   coefficients_,
                   residual_ == Residual::sensor ? gain_index_ : -1};
   penalties.resize(candidates.cols());
-  // So little work a candidate that handing it to threads would cost more.
+  // With so little work per candidate, threads would cost more.
   for (Eigen::Index begin = 0; begin < candidates.cols(); begin += kBatch) {
     if (begin > 0) pool.poll();
     const Eigen::Index count = std::min(kBatch, candidates.cols() - begin);

@@ -7,13 +7,15 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::int64_t kSamples = 3072;  // of a part: small enough to share 12 s among threads
-constexpr std::size_t kRows = 4096;      // digested at once: only running integrals have more
-// Operations that are done sooner than sleeping processors are awake: not handed to threads.
+constexpr std::int64_t kSamples =
+    3072;  // windows per part: small enough to share 12 s of motion among threads
+constexpr std::size_t kRows = 4096;  // windows digested together; only running integrals have more
+// Operations that take less time than waking sleeping threads: done on the calling thread.
 constexpr double kBrief = 2e6;
-// Where log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on `well_excited`).
+// Knee at which log(1 + s v^2 / kKnee) is even enough at its lower end (fewest nodes, on
+// `well_excited`).
 constexpr double kKnee = 10.0;
-// Pieces an octave of the scale, as a power of 2.
+// Pieces per octave of the scale, as a power of 2.
 constexpr int kPieces = 3;
 constexpr double kGolden = 0.6180339887498949;
 
@@ -25,7 +27,7 @@ double rate_of(double velocity, double exponent) {
   return base::exp(-exponent * base::log(velocity));
 }
 
-/// Chebyshev points of an axis, and probes between them; the rate of each by `rate(shape)`.
+/// Chebyshev points of an axis, and probes between them, each with the rate `rate(shape)`.
 template <class Rate>
 ShapeNodes nodes_on(const ShapeAxis& axis, Eigen::Index count, double exponent, Rate rate) {
   ShapeNodes result{axis, {exponent, {}}, {}};
@@ -40,7 +42,7 @@ ShapeNodes nodes_on(const ShapeAxis& axis, Eigen::Index count, double exponent, 
   return result;
 }
 
-/// Parts of the windows; a running sum cannot be cut within a recording.
+/// Parts of the windows. A running sum cannot be cut within a recording.
 std::vector<Stretch> parts_of(const Penalty& penalty) {
   std::vector<Stretch> parts;
   const auto& recordings = penalty.recording_of();
@@ -58,7 +60,7 @@ std::vector<Stretch> parts_of(const Penalty& penalty) {
   return parts;
 }
 
-/// Running sums down the rows, on from those of the rows before.
+/// Running sums over the rows, continued from the rows before.
 void accumulate(Eigen::MatrixXd& columns, Eigen::RowVectorXd& before) {
   if (before.size() == 0) before.setZero(columns.cols());
   columns.row(0) += before;
@@ -66,7 +68,7 @@ void accumulate(Eigen::MatrixXd& columns, Eigen::RowVectorXd& before) {
   before = columns.row(columns.rows() - 1);
 }
 
-/// `before` holds the sums over the recording's windows before the block's, for running integrals.
+/// For running integrals, `before` holds the sums over the recording's windows before the block.
 Digest digest_block(const Penalty& penalty, const Stretch& block, const DecayRates& group,
                     const base::Cancel* cancel, Eigen::RowVectorXd& before) {
   const auto rows = static_cast<Eigen::Index>(block.end - block.begin);
@@ -91,11 +93,11 @@ Digest digest_block(const Penalty& penalty, const Stretch& block, const DecayRat
     integrate_decays(penalty.nodes(term.direction), block, group, cancel, own);
     for (Eigen::Index k = 0; k < nodes; ++k) columns.col(k * shaped + j) = own.col(k);
   }
-  if (penalty.cumulative()) accumulate(columns, before);  // the constant ones are sums already
+  if (penalty.cumulative()) accumulate(columns, before);  // the constant columns are already sums
   return digest(constant, columns, shaped);
 }
 
-/// Exponentials, and products on the way to a triangle: about a nanosecond each.
+/// Exponentials, and products for the triangle: about a nanosecond each.
 double operations(const Penalty& penalty, const DecayRates& decays) {
   const auto rates = static_cast<double>(decays.rates.size());
   double exponentials = 0.0;
@@ -151,11 +153,11 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
 
 Digest digest_part(const Penalty& penalty, const Stretch& windows, const DecayRates& rates,
                    const base::Cancel* cancel) {
-  // In blocks, so that neither memory nor the time between two looks at the cancel flag grows.
+  // In blocks, which bounds the memory and the time between two checks of the cancel flag.
   Eigen::RowVectorXd before;
   std::vector<Digest> blocks;
   std::size_t begin = windows.begin;
-  do {  // a part without windows has a digest, too
+  do {  // a part without windows also has a digest
     if (cancel != nullptr) cancel->check();
     const Stretch block{begin, std::min(windows.end, begin + kRows)};
     blocks.push_back(digest_block(penalty, block, rates, cancel, before));

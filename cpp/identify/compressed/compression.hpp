@@ -1,6 +1,6 @@
 #pragma once
-// From a penalty over all samples to functions of the shapes: which nodes, their digests over all
-// windows, and the table through them.
+// From a penalty over all samples to functions of the shapes: the choice of nodes, their digests
+// over all windows, and the table through them.
 
 #include <optional>
 #include <string>
@@ -15,15 +15,15 @@
 namespace jointid::identify {
 
 /// The shapes at which columns are digested: a rate of the Gaussian decay, or a velocity of the
-/// general one with a fixed exponent.
+/// general decay with a fixed exponent.
 struct ShapeNodes {
   ShapeAxis axis;
-  DecayRates rates;            ///< of the axis's Chebyshev points, then of the probes
+  DecayRates rates;            ///< rates of the axis's Chebyshev points, then of the probes
   std::vector<double> probes;  ///< shapes between the points
 };
 
-/// Nodes for the domain's shape, `density` times as many as usually suffice. `speed` is the
-/// largest. Says in `reason` why there are none when it returns nothing.
+/// Nodes for the domain's shape, `density` times the number that usually suffices. `speed` is the
+/// largest speed. Returns nothing if there are no nodes; `reason` then says why.
 std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Domain& domain,
                                       double speed, double density, std::string& reason);
 
@@ -31,11 +31,11 @@ std::optional<ShapeNodes> shape_nodes(const Penalty& penalty, const search::Doma
 Digest digest_part(const Penalty& penalty, const Stretch& windows, const DecayRates& rates,
                    const base::Cancel* cancel);
 
-/// The same of all windows, their parts over the threads unless there is little to do.
+/// The same for all windows, with parts on the threads unless there is little to do.
 Digest digest_all(const Penalty& penalty, const DecayRates& rates, base::Pool& pool);
 
-/// The functions of one node that a digest holds: projections of each shaped column, then inner
-/// products of the remainders.
+/// The functions of one node in a digest: projections of each shaped column, then inner products of
+/// the remainders.
 Eigen::MatrixXd functions_of(const Digest& digest);
 
 }  // namespace jointid::identify

@@ -11,9 +11,10 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::size_t kMerged = 32;  // parts at a time: the stack stays in the cache
+constexpr std::size_t kMerged = 32;  // rows per part: they stay in the cache
 
-/// Takes the `count` directions at q, `rows` apart, out of a column; `products`: its share of each.
+/// Removes the `count` directions at q, `rows` apart, from a column. `products`: the column's share
+/// of each direction.
 JOINTID_CLONES void take_out(const double* q, std::size_t count, std::size_t rows, double* column,
                              double* products) {
   base::inner_products(column, q, rows, count, rows, products);
@@ -43,7 +44,8 @@ JOINTID_CLONES double inner_product(const double* a, const double* b, std::size_
   return base::inner_product(a, b, count);
 }
 
-/// Splits columns into their projections on the constant ones and inner products of the rest.
+/// Splits columns into their projections on the constant columns and inner products of the
+/// remainders.
 Digest split(const Eigen::MatrixXd& constant, Eigen::MatrixXd& columns, Eigen::Index shaped) {
   const Eigen::Index m = constant.cols();
   auto [q, triangle] = base::orthogonal(constant);

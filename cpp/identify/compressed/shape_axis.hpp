@@ -1,9 +1,9 @@
 #pragma once
-// A shape parameter's range on the scale on which the columns change evenly.
+// A shape parameter's range on a scale on which the columns change evenly.
 //
-// A decay exp(-s v^2) turns over where s v^2 is near 1, whatever the speed: it is even in log s,
-// but for s so small that no speed feels it. So the coordinate is log z, z affine in the shape.
-// Pieces of the range are cut by the leading bits of z, which finds a shape's piece without a
+// A decay exp(-s v^2) changes most where s v^2 is near 1, for any speed. So it is even in log s,
+// except where s is too small for every speed. The coordinate is therefore log z, with z affine in
+// the shape. The leading bits of z cut the range into pieces, so a shape's piece is found without a
 // logarithm.
 
 #include <bit>
@@ -17,7 +17,7 @@ namespace jointid::identify {
 
 class ShapeAxis {
  public:
-  /// z = shift + rate * shape, positive over [lower, upper]; 2^bits pieces an octave of z.
+  /// z = shift + rate * shape, positive over [lower, upper]; 2^bits pieces per octave of z.
   ShapeAxis(double lower, double upper, double shift, double rate, int bits)
       : lower_(lower), upper_(upper), shift_(shift), rate_(rate), drop_(52 - bits) {
     if (!(z(lower) > 0.0) || !(lower <= upper)) {
@@ -36,7 +36,7 @@ class ShapeAxis {
   /// Length of all pieces on the even scale [log units].
   [[nodiscard]] double length() const { return length_; }
 
-  /// Position in [-1, 1] over all pieces, which reach a little beyond the range, and the shape
+  /// Position in [-1, 1] over all pieces, which reach slightly beyond the range, and the shape
   /// there.
   [[nodiscard]] double position(double shape) const {
     return 2.0 * base::log(z(shape) / left_) / length_ - 1.0;

@@ -13,12 +13,12 @@ namespace {
 
 constexpr std::size_t kTableLanes = ShapeTable::kLanes;
 
-// Points side by side, the lanes of a vector, and functions whose sums stay in registers.
+// Points in parallel, in the lanes of a vector, and functions with sums that stay in registers.
 constexpr std::size_t kPoints = 8;
 constexpr std::size_t kFunctions = 4;
 
-/// Some series' values at kPoints points x (also a little outside [-1, 1]). Coefficients lie one
-/// term after the other, `stride` apart, as do the values one point after the other.
+/// Values of some series at kPoints points x (also slightly outside [-1, 1]). Coefficients are
+/// stored by terms and values by points, `stride` apart.
 JOINTID_CLONES void series_at(const double* coefficients, std::size_t functions, std::size_t stride,
                               std::size_t terms, const double* x, double* values) {
   std::array<std::array<double, kPoints>, kFunctions> sums{};
@@ -46,14 +46,14 @@ JOINTID_CLONES void series_at(const double* coefficients, std::size_t functions,
 
 /// Values at local Chebyshev points -> coefficients of powers of the local coordinate.
 ///
-/// In two steps: through the series, whose rounding stays where it belongs. One matrix for both
+/// In two steps through the series, so that rounding errors stay small. One matrix for both steps
 /// would have entries in the thousands that cancel.
 class Powers {
  public:
   explicit Powers(Eigen::Index order)
       : series_(chebyshev_coefficients(Eigen::MatrixXd::Identity(order, order))),
         powers_(Eigen::MatrixXd::Zero(order, order)) {
-    powers_(0, 0) = 1.0;  // T_k, one a row
+    powers_(0, 0) = 1.0;  // T_k, one per row
     if (order > 1) powers_(1, 1) = 1.0;
     for (Eigen::Index k = 2; k < order; ++k) {
       powers_.row(k).tail(order - 1) = 2.0 * powers_.row(k - 1).head(order - 1);
@@ -70,8 +70,8 @@ class Powers {
   Eigen::MatrixXd powers_;
 };
 
-/// Series through values over an axis's whole range (functions x Chebyshev points), at all pieces'
-/// local points: functions x points.
+/// Series through values over an axis's whole range (functions x Chebyshev points), evaluated at
+/// all pieces' local points: functions x points.
 Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order,
                           const Eigen::MatrixXd& values) {
   const Eigen::MatrixXd coefficients = chebyshev_coefficients(values);
@@ -95,7 +95,7 @@ Eigen::MatrixXd at_pieces(const ShapeAxis& axis, Eigen::Index order,
   return result;
 }
 
-/// Horner's rule over `order` rows of lanes that lie `stride` apart.
+/// Horner's rule over `order` rows of lanes that are `stride` apart.
 inline void horner(const double* rows, std::size_t order, std::size_t stride, double x,
                    double* result) {
   std::array<double, kTableLanes> sum;
@@ -133,7 +133,7 @@ Eigen::VectorXd chebyshev_points(Eigen::Index count) {
 
 Eigen::MatrixXd chebyshev_coefficients(const Eigen::MatrixXd& values) {
   const Eigen::Index count = values.cols();
-  // cos(pi j (k + 1/2) / count) repeats itself: one table of its values will do.
+  // cos(pi j (k + 1/2) / count) repeats, so one table of its values suffices.
   Eigen::VectorXd cosine(4 * count);
   for (Eigen::Index i = 0; i < 4 * count; ++i) {
     cosine[i] =
@@ -157,7 +157,7 @@ ShapeTable::ShapeTable(const ShapeAxis& axis, const Eigen::MatrixXd& values, int
   const auto order = static_cast<Eigen::Index>(order_);
   const auto pieces = static_cast<Eigen::Index>(axis_.pieces());
   const Eigen::MatrixXd points = at_pieces(axis_, order, values);
-  // All pieces at once, a row for each function of each: (piece, function) x local point.
+  // All pieces at once, one row per function of each piece: (piece, function) x local point.
   Eigen::MatrixXd local(pieces * functions_, order);
   for (Eigen::Index piece = 0; piece < pieces; ++piece) {
     local.middleRows(piece * functions_, functions_) = points.middleCols(piece * order, order);

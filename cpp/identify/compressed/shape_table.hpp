@@ -1,5 +1,5 @@
 #pragma once
-// Several smooth functions of a shape, as polynomials over pieces of its range: their values at any
+// Several smooth functions of a shape, as polynomials over pieces of its range. The values at any
 // shape cost the same few dozen operations.
 
 #include <Eigen/Core>
@@ -24,13 +24,13 @@ class ShapeTable {
   ShapeTable(const ShapeAxis& axis, const Eigen::MatrixXd& values, int degree);
 
   [[nodiscard]] Eigen::Index functions() const { return functions_; }
-  /// Functions with padding: what values() and slopes() write.
+  /// Number of functions with padding, which values() and slopes() write.
   [[nodiscard]] std::size_t width() const { return width_; }
   [[nodiscard]] const ShapeAxis& axis() const { return axis_; }
 
-  /// All functions at a shape, which must lie in the axis's range.
+  /// Values of all functions at a shape, which must lie in the axis's range.
   void values(double shape, double* result) const;
-  /// Their derivatives.
+  /// Derivatives of all functions by the shape.
   void slopes(double shape, double* result) const;
 
  private:
@@ -41,8 +41,8 @@ class ShapeTable {
   ShapeAxis axis_;
   Eigen::Index functions_;
   std::size_t width_;
-  std::size_t order_;         ///< coefficients of a piece: degree + 1
-  std::vector<double> rows_;  ///< piece, power of the shape, function
+  std::size_t order_;         ///< coefficients per piece: degree + 1
+  std::vector<double> rows_;  ///< by piece, power of the shape, function
 };
 
 }  // namespace jointid::identify

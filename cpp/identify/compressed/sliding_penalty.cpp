@@ -8,7 +8,7 @@ namespace jointid::identify {
 
 namespace {
 
-// Nodes cannot be added later: some more than suffice for a whole recording.
+// Nodes cannot be added later, so there are more than a whole recording needs.
 constexpr double kDensity = 1.2;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The first stage of the residual of instruments: the columns that explain the reading, and what
-// they make of it.
+// The first stage of the residual 'instruments': the columns that explain the reading, and the
+// projection on them.
 
 #include <algorithm>
 #include <array>
@@ -18,15 +18,16 @@ namespace jointid::identify {
 
 namespace {
 
-// Decays at these shares of the largest speed span those of any shape well enough: their columns
-// must hold no more of the reading's noise than the balance's own do.
+// Decays at these shares of the largest speed represent those of any shape well enough. Their
+// columns must hold no more of the reading's noise than the balance's own columns do.
 constexpr std::array<double, 8> kShares{0.6, 0.33, 0.18, 0.1, 0.055, 0.03, 0.017, 0.009};
-constexpr std::size_t kRows = 4096;  // of a block
-constexpr std::size_t kKept = 4;     // blocks up to which their rows are kept between the stages
-// Each recording's link has columns of its own while windows outnumber all columns by this.
+constexpr std::size_t kRows = 4096;  // rows per block
+constexpr std::size_t kKept =
+    4;  // number of blocks up to which their rows are kept between the stages
+// Each recording's link has its own columns if windows outnumber all columns by this factor.
 constexpr std::size_t kPerColumn = 50;
 
-/// In explicit vectors: compilers keep such sums in memory.
+/// In explicit vectors, because compilers keep such sums in memory.
 JOINTID_CLONES void weighted_sums(const double* weight, const double* decays, std::size_t count,
                                   double* sums) {
   static_assert(kShares.size() == 2 * base::kFour);
@@ -105,7 +106,7 @@ void Penalty::sum_decays(const FrictionNodes& nodes, const Stretch& windows,
     if (known == nullptr || count != static_cast<std::size_t>(windows_[w].end) - begin + 1 ||
         std::memcmp(known->speed.data() + begin, nodes.speed.data() + nodes.first[w],
                     count * sizeof(double)) != 0) {
-      continue;  // cut, or with a reversal
+      continue;  // a window that is cut or has a reversal
     }
     sum_others(w);
     weighted_sums(nodes.weight.data() + nodes.first[w],

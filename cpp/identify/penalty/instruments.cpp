@@ -11,20 +11,22 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr double kImplied = 1e-6;  // of a column's size: less beyond the others counts as nothing
-// Gravity alone will do where it has this share of what the whole link says: the gain's error grows
-// by a fifth at most.
+constexpr double kImplied =
+    1e-6;  // of a column's norm: a smaller part outside the other columns is ignored
+// Gravity alone suffices if it has this share of the whole link's information. The gain's error
+// then grows by a fifth at most.
 constexpr double kGravityAlone = 0.7;
 constexpr double kWeak = 10.0;
-constexpr double kSmallest = 1e-6;  // share: less is the integrals' own rounding
+constexpr double kSmallest = 1e-6;  // share: smaller ones are the integrals' own rounding
 
-/// Columns made orthonormal one by one; those that the others imply are left out.
+/// Makes columns orthonormal one by one, and omits columns that the others imply.
 class Basis {
  public:
   explicit Basis(const Eigen::MatrixXd& triangle)
       : triangle_(triangle), q_(triangle.rows(), 0), reading_(triangle.col(triangle.cols() - 1)) {}
 
-  /// Adds columns; returns how much of the reading's square they explain beyond those before.
+  /// Adds columns. Returns the part of the reading's square that they explain in addition to the
+  /// columns before.
   double add(Eigen::Index first, Eigen::Index count) {
     double explained = 0.0;
     for (Eigen::Index j = first; j < first + count; ++j) {
@@ -45,13 +47,13 @@ class Basis {
     return explained;
   }
   [[nodiscard]] Eigen::Index used() const { return q_.cols(); }
-  /// What of the reading's square the columns leave over.
+  /// Part of the reading's square that the columns do not explain.
   [[nodiscard]] double left() const {
     Eigen::VectorXd rest = reading_;
     rest.noalias() -= q_ * (q_.transpose() * reading_);
     return rest.squaredNorm();
   }
-  /// Weights of all columns whose sum is the projection.
+  /// Weights of all columns; the weighted sum is the projection.
   [[nodiscard]] Eigen::VectorXd weights() const {
     Eigen::MatrixXd own(triangle_.rows(), used());
     for (Eigen::Index i = 0; i < used(); ++i) {
@@ -128,7 +130,7 @@ Eigen::MatrixXd square_triangle(Eigen::MatrixXd rows) {
 }
 
 Eigen::MatrixXd fold(const std::vector<Eigen::MatrixXd>& triangles) {
-  constexpr std::size_t kFolded = 32;  // at a time: the stack stays in the cache
+  constexpr std::size_t kFolded = 32;  // rows at a time: they stay in the cache
   Eigen::MatrixXd result = triangles.front();
   const Eigen::Index m = result.cols();
   for (std::size_t begin = 1; begin < triangles.size(); begin += kFolded) {

@@ -10,7 +10,8 @@ namespace jointid::identify {
 
 namespace {
 
-/// speed -> its product with the duration; beside it the frictions that do not grow with it.
+/// Multiplies the column of the speed by the duration, and fills the columns of friction that does
+/// not grow with the speed are filled, too.
 JOINTID_CLONES void frictions(double* speed, const double* duration, double slow, std::size_t count,
                               double* dry, double* fading) {
   for (std::size_t i = 0; i < count; ++i) {

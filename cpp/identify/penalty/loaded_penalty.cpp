@@ -5,7 +5,7 @@
 #include "identify/balance/load_friction.hpp"
 #include "identify/penalty/penalty.hpp"
 
-// The part of the penalty that is there for load friction, which acts on the sum of all terms.
+// The part of the penalty for load friction, which acts on the sum of all terms.
 
 namespace jointid::identify {
 

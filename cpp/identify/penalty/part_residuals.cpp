@@ -4,7 +4,7 @@
 #include "identify/balance/interval_residual.hpp"
 #include "identify/penalty/penalty_parts.hpp"
 
-// Residuals of a part's windows at one parameter vector, without columns where none are needed.
+// Residuals of a part's windows at one parameter vector, without columns if none are needed.
 
 namespace jointid::identify {
 

@@ -41,7 +41,7 @@ void Penalty::add_term(const std::string& key) {
 
 namespace {
 
-/// Usable intervals in which the joint moves backward on the whole.
+/// Usable intervals in which the net motion is backward.
 std::vector<std::uint8_t> backward_intervals(const RecordingView& r,
                                              const std::vector<std::uint8_t>& usable) {
   std::vector<std::uint8_t> result(usable.size());
@@ -80,7 +80,7 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
     throw std::invalid_argument("gear_ratio must be finite and not 0");
   }
   for (const auto& key : terms) add_term(key);
-  if (link_load_ && gain_index_ < 0) {  // nothing parts the link's inertia from the drive's
+  if (link_load_ && gain_index_ < 0) {  // nothing separates the link's inertia from the drive's
     share_ = static_cast<Eigen::Index>(names_.size() - terms_.size());
     names_.emplace_back("link_share");
   }
@@ -119,7 +119,7 @@ Penalty::Penalty(const Masked& recordings, const std::vector<std::string>& terms
 void Penalty::accumulate_all() {
   if (!cumulative_) return;
   accumulate(target_);
-  if (load_ >= 0) return;  // there it is the sum's residuals that are accumulated
+  if (load_ >= 0) return;  // there the residuals of the sum are accumulated
   for (Eigen::Index j = 0; j < columns_.cols(); ++j) accumulate(columns_.col(j));
   for (Eigen::Index j = 0; j < link_.cols(); ++j) accumulate(link_.col(j));
 }
@@ -157,7 +157,7 @@ void Penalty::cut(const Masked& recordings, WindowOptions wanted) {
     if (windows_.empty()) {
       windows_.swap(windows);
     } else {
-      // One by one: of insert() gcc 14 warns that it writes beyond the end, which it does not.
+      // One by one, because gcc 14 wrongly warns that insert() writes beyond the end.
       for (const auto& window : windows) windows_.push_back(window);
     }
   }
@@ -238,7 +238,7 @@ void Penalty::integrate_all(const Masked& recordings, double gear_ratio, base::P
     for (const auto& block : blocks) linear(block);
     collect_nodes(recordings, cancel, false);
     if (load_ >= 0) collect_nodes(recordings, cancel, true);
-  } else {  // the nodes are one task, the longest: it goes first
+  } else {  // the nodes are the longest task, so they go first
     pool->for_each(blocks.size() + 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         if (i == 0) {
@@ -262,7 +262,7 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
   all.speed.reserve(samples + samples / 64 + 64);
   all.weight.reserve(samples + samples / 64 + 64);
   all.first.reserve(windows_.size() + 1);
-  constexpr std::size_t kWindows = 4096;  // between two looks at the cancel flag
+  constexpr std::size_t kWindows = 4096;  // windows between two checks of the cancel flag
   for (std::size_t w = 0; w < windows_.size();) {
     if (cancel != nullptr) cancel->check();
     std::size_t end = w;
@@ -273,7 +273,7 @@ void Penalty::collect_nodes(const Masked& recordings, const base::Cancel* cancel
     const auto own = std::span(windows_).subspan(w, end - w);
     if (backward) {
       append_nodes(r, backward_intervals(r, masked.usable()), own, all);
-    } else {  // by reference: one of two in an expression is copied, for every part of a recording
+    } else {  // by reference: a conditional expression would copy it for every part of a recording
       append_nodes(r, masked.usable(), own, all);
     }
     w = end;

@@ -1,6 +1,6 @@
 #pragma once
-// What every form of the penalty offers to a search: the direct sum over all samples, and the
-// compressed form that knows the same sum by a few numbers.
+// Interface of the penalty for a search. There is the direct sum over all samples, and the
+// compressed form that represents the same sum by a few numbers.
 
 #include <Eigen/Core>
 #include <string>
@@ -27,13 +27,13 @@ class PenaltyFunction {
   [[nodiscard]] virtual const std::vector<std::string>& names() const = 0;
   [[nodiscard]] virtual Eigen::Index coefficients() const = 0;
   [[nodiscard]] virtual Residual residual() const = 0;
-  /// Position of sensor_gain among the parameters, -1 without a sensor.
+  /// Index of sensor_gain among the parameters, -1 without a sensor.
   [[nodiscard]] virtual Eigen::Index gain_index() const = 0;
   [[nodiscard]] Eigen::Index parameters() const {
     return static_cast<Eigen::Index>(names().size());
   }
 
-  /// Whether an evaluation takes so little that waking another thread for it would take longer.
+  /// Whether an evaluation takes less time than waking another thread.
   [[nodiscard]] virtual bool is_cheap() const = 0;
 
   /// Columns of all coefficients for these shapes (rows x coefficients).
@@ -42,19 +42,20 @@ class PenaltyFunction {
   [[nodiscard]] virtual const Eigen::VectorXd& target() const = 0;
   /// Whether, for given shapes, the residuals of the torque are linear in the coefficients.
   [[nodiscard]] virtual bool is_linear() const { return true; }
-  /// Columns of the balance made linear about these coefficients; else the same as `columns`.
+  /// Columns of the balance linearised about these coefficients; for a linear balance the same as
+  /// `columns`.
   virtual void linear_columns(const Eigen::VectorXd& shapes, const Eigen::VectorXd& /*about*/,
                               Eigen::MatrixXd& result, const base::Cancel* cancel = nullptr) const {
     columns(shapes, result, cancel);
   }
 
-  /// Throws std::invalid_argument when theta has the wrong length or the gain is zero.
+  /// Throws std::invalid_argument if theta has the wrong length or the gain is zero.
   virtual double operator()(const Eigen::VectorXd& theta,
                             const base::Cancel* cancel = nullptr) const = 0;
   /// Residuals, and on request their derivatives (rows x parameters).
   virtual void residuals(const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
                          Eigen::MatrixXd* jacobian, const base::Cancel* cancel = nullptr) const = 0;
-  /// One candidate a column, one penalty each.
+  /// Penalties of candidates, one candidate per column.
   virtual void evaluate(const Eigen::MatrixXd& candidates, Eigen::VectorXd& penalties,
                         base::Pool& pool) const = 0;
 
@@ -65,7 +66,7 @@ class PenaltyFunction {
   PenaltyFunction& operator=(const PenaltyFunction&) = default;
   PenaltyFunction& operator=(PenaltyFunction&&) = default;
 
-  /// What operator() and residuals refuse.
+  /// Checks theta for operator() and residuals.
   void check(const Eigen::VectorXd& theta) const;
 };
 

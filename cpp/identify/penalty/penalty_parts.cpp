@@ -6,7 +6,8 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr std::int64_t kSamples = 8192;  // a part: its columns and nodes stay in the cache
+constexpr std::int64_t kSamples =
+    8192;  // samples per part: its columns and nodes stay in the cache
 
 }  // namespace
 

@@ -1,6 +1,7 @@
 #pragma once
-// A penalty in parts of some thousand samples each: what is summed over all windows once or twice
-// needs no columns of all of them in memory, and its parts go over the threads.
+// A penalty in parts of some thousand samples each. Quantities that are summed over all windows
+// once or twice then need no columns of all windows in memory. The parts are distributed over the
+// threads.
 
 #include <functional>
 #include <memory>
@@ -14,7 +15,7 @@
 
 namespace jointid::identify {
 
-/// Windows that are known, and the recording of each.
+/// Known windows, and the recording of each.
 struct CutWindows {
   std::vector<Window> windows;
   std::vector<int> recording_of;
@@ -22,8 +23,7 @@ struct CutWindows {
 
 class PenaltyParts {
  public:
-  /// Over windows that are known. A part ends only where one of `ends` begins; without any,
-  /// anywhere.
+  /// Over known windows. A part ends only where one of `ends` begins; without any, anywhere.
   PenaltyParts(const Penalty::Masked& recordings, const std::vector<std::string>& terms,
                CutWindows windows, const std::vector<std::size_t>& ends, Residual residual,
                double gear_ratio, const std::vector<std::string>& per_recording);
@@ -36,7 +36,7 @@ class PenaltyParts {
   [[nodiscard]] Eigen::Index window_count() const {
     return static_cast<Eigen::Index>(windows_.size());
   }
-  /// The first window of a part; of the number of parts, the number of windows.
+  /// The first window of a part. For the index `count()`, the number of windows.
   [[nodiscard]] std::size_t first(std::size_t part) const { return first_[part]; }
   [[nodiscard]] Eigen::Index parameters() const { return names_; }
   [[nodiscard]] std::int64_t samples() const { return frame_.total_samples(); }
@@ -46,18 +46,18 @@ class PenaltyParts {
   }
   /// The penalty over the windows of one part.
   [[nodiscard]] Penalty part(std::size_t index) const;
-  /// Some windows, and the torque's residual over each at one parameter vector.
+  /// Some windows, and the residual of the torque over each at one parameter vector.
   struct Residuals {
     std::span<const Window> windows;
     std::span<const int> recording_of;
     Eigen::VectorXd torque;
-    Eigen::VectorXd duration;  ///< usable [s]
+    Eigen::VectorXd duration;  ///< usable time [s]
   };
-  /// Of the windows of one part. Its columns are made only where the balance needs them.
+  /// Residuals of the windows of one part. Columns are computed only if the balance needs them.
   [[nodiscard]] Residuals residuals(std::size_t index, const Eigen::VectorXd& theta) const;
-  /// The first stage over all windows, where the residual is that of instruments: for
-  /// `part(i).project_reading`. `free` are the parameters that vary.
-  /// Parts that a caller has made already are not made again.
+  /// The first stage over all windows, if the residual is 'instruments', for
+  /// `part(i).project_reading`. `free` are the free parameters.
+  /// Existing parts of the caller are used instead of new ones.
   [[nodiscard]] std::optional<FirstStage> first_stage(
       const std::vector<Eigen::Index>& free, const std::vector<std::unique_ptr<Penalty>>& made,
       base::Pool* pool) const;
@@ -71,7 +71,7 @@ class PenaltyParts {
   Penalty::Masked recordings_;
   double gear_ratio_;
   std::vector<std::string> per_recording_;
-  Penalty frame_;  ///< the terms; no window
+  Penalty frame_;  ///< only the terms, without windows
   std::vector<Window> windows_;
   std::vector<int> recording_of_;
   Eigen::Index names_ = 0;
@@ -80,7 +80,7 @@ class PenaltyParts {
   std::vector<std::size_t> first_;  ///< windows first_[i] .. first_[i + 1] - 1 are part i
 };
 
-/// Calls work(i) for each i < count: by the pool's workers, or one after the other without one.
+/// Calls work(i) for each i < count, on the pool's workers, or one after the other without a pool.
 void for_each(std::size_t count, base::Pool* pool, const std::function<void(std::size_t)>& work);
 
 }  // namespace jointid::identify

@@ -4,7 +4,7 @@
 #include "base/input_error.hpp"
 #include "identify/penalty/penalty.hpp"
 
-// Coefficients that each recording has for itself.
+// Coefficients with one value per recording.
 
 namespace jointid::identify {
 

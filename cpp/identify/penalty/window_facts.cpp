@@ -2,7 +2,7 @@
 
 #include "identify/penalty/penalty.hpp"
 
-// What the windows of a penalty hold, beside the integrals of its terms.
+// Facts about the windows of a penalty, in addition to the integrals of its terms.
 
 namespace jointid::identify {
 

@@ -12,23 +12,28 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr double kSlow = 0.003;            // of the peak speed: below, for long, is standing still
+constexpr double kSlow =
+    0.003;  // of the peak speed: a slower motion that lasts long is standing still
 constexpr double kShortestStanding = 0.1;  // [s]
 constexpr double kStandingOfPeriod =
-    0.01;  // a reversal of a slow motion is slow, too: allow for its period
+    0.01;  // a reversal of a slow motion is also slow, so its period counts
 constexpr double kJolt =
-    0.05;  // of the largest torque: such a jump changes the acceleration within a sample
-constexpr Eigen::Index kRarest = 5;  // at most one interval in five is left out for that
-constexpr Eigen::Index kReach = 2;   // intervals left out on either side of what is not smooth
-constexpr double kFine = 1e-4;       // of the peak speed: so fine a velocity is zero only at rest
-constexpr double kStopped = 0.5;     // of the change of speed a sample: slower between two of them
-constexpr Eigen::Index kBlock = 64;  // samples that are looked at together before one by one
+    0.05;  // of the largest torque: such a step changes the acceleration within a sample
+constexpr Eigen::Index kRarest =
+    5;  // at most one interval in five is left out because of such steps
+constexpr Eigen::Index kReach =
+    2;  // intervals left out on either side of a place that is not smooth
+constexpr double kFine =
+    1e-4;  // of the peak speed: a velocity with finer steps is zero only at rest
+constexpr double kStopped =
+    0.5;  // of the change of speed per sample: the slowest speed of a stop between two samples
+constexpr Eigen::Index kBlock = 64;  // samples that are checked together before one by one
 constexpr double kResolved =
-    0.005;  // of the peak speed: a motion slower than this per quantum seems to stick
-constexpr double kHeld = 0.02;  // of the peak speed: a velocity above is no noise of one at rest
-constexpr double kSteps = 2.0;  // of the position, which a motion does not pass unseen
+    0.005;  // of the peak speed: a motion that is slower than this per quantum seems to stick
+constexpr double kHeld = 0.02;  // of the peak speed: a faster velocity is not noise at rest
+constexpr double kSteps = 2.0;  // quanta of the position: a longer motion would be visible
 
-/// Marks samples first..last of each run in which `same(k)` holds for consecutive k, if the run
+/// Marks the samples first..last of each run in which `same(k)` holds for consecutive k, if the run
 /// passes `long_enough`.
 template <class Same, class LongEnough>
 void mark_runs(Eigen::Index count, std::vector<std::uint8_t>& mark, Same same,
@@ -55,19 +60,19 @@ double sticking_time(const MotionScale& scale) {
   return scale.quantum / (kResolved * scale.peak);
 }
 
-/// Whether the joint seems to have come to rest beside a sample for less than an interval: it
-/// slowed down and sped up again evenly, and was slower there than its acceleration explains.
+/// Whether the joint probably stopped next to a sample for less than an interval. It slowed down
+/// and sped up again evenly, and was slower there than its acceleration explains.
 bool stopped_briefly(const RecordingView& r, Eigen::Index k) {
   const auto v = [&](Eigen::Index i) { return r.velocity[k + i]; };
   const double sign = v(-1) > 0.0 ? 1.0 : -1.0;
   if (!(sign * v(-2) > sign * v(-1) && sign * v(-1) > sign * v(0))) return false;
   const double before = sign * (v(-1) - v(0));
-  if (sign * v(0) >= 0.0 && sign * v(1) >= sign * v(0)) {  // on in the same direction
+  if (sign * v(0) >= 0.0 && sign * v(1) >= sign * v(0)) {  // continues in the same direction
     const double after = sign * (v(2) - v(1));
     const bool faster = sign * v(2) > sign * v(1) && sign * v(3) > sign * v(2);
     return faster && sign * v(0) < kStopped * std::max(before, after);
   }
-  if (sign * v(0) > 0.0 && sign * v(1) <= 0.0) {  // back
+  if (sign * v(0) > 0.0 && sign * v(1) <= 0.0) {  // returns
     const double after = sign * (v(1) - v(2));
     const bool faster = sign * v(2) < sign * v(1) && sign * v(3) < sign * v(2);
     return faster && sign * (v(0) - v(1)) < kStopped * std::min(before, after);
@@ -75,10 +80,10 @@ bool stopped_briefly(const RecordingView& r, Eigen::Index k) {
   return false;
 }
 
-/// Marks the slowest samples of stops that last less than an interval or two, which no run shows.
+/// Marks the slowest samples of stops of less than an interval or two, which appear in no run.
 void mark_brief_stops(const RecordingView& r, const MotionScale& scale,
                       std::vector<std::uint8_t>& standing) {
-  if (scale.finest >= kFine * scale.peak) return;  // steps of an encoder look like stops
+  if (scale.finest >= kFine * scale.peak) return;  // the steps of an encoder look like stops
   const double slow = kResolved * scale.peak;
   for (Eigen::Index begin = 2; begin + 3 < r.samples(); begin += kBlock) {
     const Eigen::Index end = std::min(begin + kBlock, r.samples() - 3);
@@ -100,10 +105,10 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
            r.position[k] == r.position[k - 1];
   };
   const auto n = static_cast<std::size_t>(r.samples());
-  // Of most recordings no sample repeats the one before, and none is at rest.
+  // In most recordings no sample repeats the previous one, and none is at rest.
   const Eigen::Index alike =
       base::least_steps(r.position.data(), n - 1).any > 0.0 ? 0 : r.samples();
-  // A position that is held while the velocity moves on is old: the logger is faster than the bus.
+  // A position that is held while the velocity continues is old: the logger is faster than the bus.
   const auto moves_on = [&](Eigen::Index first, Eigen::Index last) {
     double distance = 0.0;
     for (Eigen::Index k = first; k <= last; ++k)
@@ -119,7 +124,7 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
     return stuck;
   });
   for (Eigen::Index k = r.samples() - 1; any && k > 0;
-       --k) {  // a run's first sample is the one before its first interval
+       --k) {  // a run's first sample is the start of its first interval
     if (standing[static_cast<std::size_t>(k)] != 0 && unchanged(k))
       standing[static_cast<std::size_t>(k - 1)] = 1;
   }
@@ -137,7 +142,7 @@ void mark_sticking(const RecordingView& r, const MotionScale& scale,
 double motion_period(const RecordingView& r, double reach) {
   const double hysteresis = 0.01 * reach;
   int changes = 0;
-  int direction = 0;  // not known before the first clear move
+  int direction = 0;  // unknown before the first clear motion
   double extreme = r.position[0];
   for (Eigen::Index k = 1; k < r.samples(); ++k) {
     const double beyond = r.position[k] - extreme;
@@ -158,8 +163,8 @@ struct Region {
   Eigen::Index end;
 };
 
-/// A stretch of `span` that stays within `reach` holds a whole block that does (or one that lasts
-/// very long), and reaches no farther than into the blocks beside such blocks.
+/// A stretch of `span` that stays within `reach` contains a whole block that does so (or a very
+/// long one). It extends at most into the neighbours of such blocks.
 std::vector<Region> quiet_regions(const RecordingView& r, double span, double reach) {
   const Eigen::Index n = r.samples();
   const double usual = (r.time[n - 1] - r.time[0]) / static_cast<double>(n - 1);
@@ -192,7 +197,7 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
   std::deque<Eigen::Index> lowest;
   for (const auto& region : quiet_regions(r, span, reach)) {
     Eigen::Index first = region.begin;
-    Eigen::Index marked = region.begin;  // samples before this one are settled
+    Eigen::Index marked = region.begin;  // samples before this one are decided
     highest.clear();
     lowest.clear();
     for (Eigen::Index k = region.begin; k < region.end; ++k) {
@@ -205,7 +210,7 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
       while (!lowest.empty() && r.position[lowest.back()] >= r.position[k]) lowest.pop_back();
       highest.push_back(k);
       lowest.push_back(k);
-      // The longest stretch ending at k that stays within reach: the joint stood still if it lasts
+      // The longest stretch ending at k that stays within reach. The joint stood still if it lasts
       // long enough.
       while (r.position[highest.front()] - r.position[lowest.front()] > reach) {
         ++first;
@@ -213,7 +218,8 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
         if (lowest.front() < first) lowest.pop_front();
       }
       if (r.time[k] - r.time[first] >= span) {
-        // Only as much of it as is as slow as `span` says: the last span's worth and what joins it.
+        // Only the part that is as slow as `span` requires: the last span, and the part joined to
+        // it.
         Eigen::Index from = k;
         while (from > first && from > marked && r.time[k] - r.time[from - 1] <= span) --from;
         std::fill(standing.begin() + from, standing.begin() + k + 1, std::uint8_t{1});
@@ -223,7 +229,7 @@ void mark_standing(const RecordingView& r, const MotionScale& scale,
   }
 }
 
-/// Intervals that begin or end slower than the recording's least speed.
+/// Intervals that begin or end below the recording's least speed.
 void mark_slow(const RecordingView& r, std::vector<std::uint8_t>& usable) {
   for (Eigen::Index k = 0; k + 1 < r.samples(); ++k) {
     const double slowest = std::min(std::fabs(r.velocity[k]), std::fabs(r.velocity[k + 1]));
@@ -231,8 +237,8 @@ void mark_slow(const RecordingView& r, std::vector<std::uint8_t>& usable) {
   }
 }
 
-/// Reversals at which a held command jumps: the instant at which the joint reverses, sticks or
-/// breaks away lies between samples and is unknown. The error is friction times a sample period.
+/// Reversals at which a held command jumps. The joint reverses, sticks or breaks loose at an
+/// unknown time between samples. The error is friction times a sample period.
 void mark_jolts(const RecordingView& r, const MotionScale& scale,
                 std::vector<std::uint8_t>& usable) {
   const double least = kJolt * scale.push;
@@ -259,7 +265,8 @@ void mark_jolts(const RecordingView& r, const MotionScale& scale,
       if (turning && jumps(k)) turns.push_back(k);
     }
   }
-  // With few samples per reversal every reversal jumps: a bias is better than no data.
+  // With few samples per reversal the command jumps at every reversal: a bias is better than no
+  // data.
   constexpr Eigen::Index width = 2 * kReach + 1;
   if (kRarest * width * static_cast<Eigen::Index>(turns.size()) > n) return;
   for (const auto k : turns) {
@@ -316,8 +323,9 @@ UsableIntervals usable_intervals(const RecordingView& r, const MotionScale& scal
     mark_standing(r, scale, after_gap, standing);
     if (cancel != nullptr) cancel->check();
     result.standing = std::count(standing.begin(), standing.end(), std::uint8_t{1});
-    // The interval that touches a stuck sample holds a break-away or a stop; the one beside it has
-    // a derived velocity that saw the stop, and friction that changes too fast for the trapezoid.
+    // The interval that touches a stuck sample contains a break-away or a stop. In the interval
+    // next to it, a derived velocity still includes the stop, and friction changes too fast for the
+    // trapezoidal rule.
     constexpr auto reach = static_cast<std::size_t>(kReach);
     for (std::size_t k = 0; result.standing > 0 && k < n; ++k) {
       if (standing[k] == 0) continue;

@@ -13,7 +13,7 @@ namespace jointid::identify {
 
 namespace {
 
-/// Sum of squared differences of samples `lag` apart, in four lanes of a fixed order.
+/// Sum of squared differences of samples `lag` apart, in four lanes with a fixed order.
 double squared_changes(const double* v, Eigen::Index count, Eigen::Index lag) {
   std::array<double, 4> sum{};
   Eigen::Index k = 0;
@@ -90,7 +90,7 @@ double MaskedRecording::structure(Eigen::Index lag, const base::Cancel* cancel) 
   const std::lock_guard lock(mutex_);
   const auto known = structure_.find(lag);
   if (known != structure_.end()) return known->second;
-  constexpr Eigen::Index kBlock = 65536;  // samples between two looks at the cancel flag
+  constexpr Eigen::Index kBlock = 65536;  // samples between two checks of the cancel flag
   double sum = 0.0;
   Eigen::Index pairs = 0;
   for (const auto& run : runs_) {

@@ -1,5 +1,6 @@
 #pragma once
-// A recording with its mask and the statistics that every cut into windows needs, computed once.
+// A recording with its mask and the statistics that every division into windows needs, computed
+// once.
 
 #include <cmath>
 #include <cstdint>
@@ -13,16 +14,16 @@
 
 namespace jointid::identify {
 
-/// From this x on exp(-rate x) is nothing beside the 1 that samples at rest have: exp(-50) = 2e-22.
+/// From this x on, exp(-rate x) is negligible against the 1 of samples at rest: exp(-50) = 2e-22.
 inline double vanishing_at(double rate) {
   return rate > 0.0 ? 50.0 / rate : HUGE_VAL;
 }
 
-/// Decays exp(-rate v^2) at every sample; zero where the slowest of them has vanished.
+/// Decays exp(-rate v^2) at every sample; zero where the slowest decay has vanished.
 struct SampleDecays {
   std::vector<double> rates;
   Eigen::VectorXd speed;   ///< |v|
-  Eigen::VectorXd values;  ///< those of one sample side by side
+  Eigen::VectorXd values;  ///< decays of one sample are adjacent
 };
 
 class MaskedRecording {
@@ -40,19 +41,19 @@ class MaskedRecording {
     return static_cast<std::int64_t>(mask_.usable.size()) - usable_count_;
   }
   [[nodiscard]] std::int64_t standing() const { return mask_.standing; }
-  /// Median time between samples [s]. Remembered.
+  /// Median time between samples [s]. Stored after the first call.
   double period(const base::Cancel* cancel = nullptr) const;
   /// Mean square of the velocity's noise in a difference of two samples.
   double noise(const base::Cancel* cancel = nullptr) const;
-  /// Structure function D(lag) = mean (v[k+lag] - v[k])^2 over what is usable throughout; 0 if
-  /// nothing is. Remembered.
+  /// Structure function D(lag) = mean (v[k+lag] - v[k])^2 over stretches that are usable
+  /// throughout; 0 if there is none. Stored after the first call.
   [[nodiscard]] double structure(Eigen::Index lag, const base::Cancel* cancel = nullptr) const;
-  /// The decays of some rates; remembered, since windows of several lengths sum the same. Null of a
-  /// recording so long that they would fill memory.
+  /// The decays of these rates. They are stored, because windows of several lengths sum the same
+  /// decays. Null if the recording is so long that they would fill the memory.
   [[nodiscard]] std::shared_ptr<const SampleDecays> decays(const std::vector<double>& rates) const;
 
  private:
-  struct Run {  ///< samples begin .. end, all intervals between them usable
+  struct Run {  ///< samples begin .. end; all intervals between them are usable
     Eigen::Index begin;
     Eigen::Index end;
   };

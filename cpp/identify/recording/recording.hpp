@@ -23,12 +23,12 @@ struct Recording {
 
   [[nodiscard]] Eigen::Index samples() const { return time.size(); }
   [[nodiscard]] bool has_sensor() const { return sensor.size() > 0; }
-  /// Throws std::invalid_argument when lengths differ, a value is not finite or time does not
+  /// Throws std::invalid_argument if lengths differ, a value is not finite or time does not
   /// increase.
   void validate() const;
 };
 
-/// A view of the same signals: nothing is copied; their owner must outlive the view.
+/// A view of the same signals, without a copy. Their owner must outlive the view.
 struct RecordingView {
   using Signal = Eigen::Map<const Eigen::VectorXd>;
   Signal time;
@@ -38,9 +38,9 @@ struct RecordingView {
   Signal sensor;
   Hold torque_hold;
   std::vector<std::int64_t> gap_after;
-  double min_speed = 0.0;              ///< [rad/s or m/s]; what is slower is left out
+  double min_speed = 0.0;              ///< [rad/s or m/s]; slower samples are left out
   std::vector<std::int64_t> doubtful;  ///< first sample of each interval that must not be used
-  /// What an own term, of that name, integrates to from the first sample to each.
+  /// Integral of the own term with this name, from the first sample to each sample.
   struct OwnSeries {
     std::string name;
     Signal series;

@@ -12,12 +12,12 @@ namespace jointid::identify {
 namespace {
 
 constexpr double kNoiseShare = 1e-3;
-constexpr double kNoiseLimit = 1e-2;  // attenuates the inertia by about as much
+constexpr double kNoiseLimit = 1e-2;  // reduces the inertia by about this share
 constexpr Eigen::Index kShortest =
-    10;  // samples: below, windows beside a stop weigh its model error too much
+    10;  // samples: in shorter windows, the model error next to a stop has too much weight
 constexpr Eigen::Index kFewest =
-    5;  // samples, when the record is so short that 10 leave too few windows
-constexpr std::int64_t kWindowsEach = 20;  // windows a parameter, at least
+    5;  // samples, if the recording is so short that 10 leave too few windows
+constexpr std::int64_t kWindowsEach = 20;  // least number of windows per parameter
 
 struct Stretch {
   std::int64_t begin;
@@ -43,7 +43,7 @@ double covered(const RecordingView& r) {
   return sum;
 }
 
-/// Windows of a duration in a stretch.
+/// Windows of this duration in a stretch.
 std::int64_t count_in(const RecordingView& r, const Stretch& stretch, double duration) {
   const double length = r.time[stretch.end] - r.time[stretch.begin];
   const auto wanted = static_cast<std::int64_t>(std::llround(length / duration));
@@ -85,7 +85,7 @@ WindowChoice choose_window(const MaskedRecording& r, std::int64_t parameters,
     choice.duration = static_cast<double>(lag) * r.period();
   }
   choice.duration *= options.factor;
-  // Share of noise in these windows, whether chosen here or given.
+  // Noise share of these windows, with a chosen or a fixed duration.
   const double lag = std::round(choice.duration / r.period());
   choice.noise_share = share(static_cast<Eigen::Index>(
       std::clamp(lag, 1.0, static_cast<double>(r.recording().samples() - 1))));
@@ -122,7 +122,7 @@ std::vector<std::int64_t> places_of(const RecordingView& r, std::span<const Wind
     const auto intervals = stretch.end - stretch.begin;
     const auto count = count_in(r, stretch, duration);
     for (; window != windows.end() && window->end <= stretch.end; ++window) {
-      // The place whose window begins there: begin = intervals place / count, rounded down.
+      // The index of the window that begins there: begin = intervals place / count, rounded down.
       const auto begin = window->begin - stretch.begin;
       places.push_back((begin * count + intervals - 1) / intervals);
     }

@@ -14,14 +14,13 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// What is left of a direction's freedom outside a segment that determines it all.
+// Remaining freedom of a direction that one segment determines completely.
 constexpr double kLeast = 0.05;
-// Norm of a segment's shares up to which the series of its correction takes fewer operations than
-// eigenvalues.
+// Largest norm of a segment's shares at which the series of its correction takes fewer operations
+// than eigenvalues.
 constexpr double kSmallShare = 0.5;
 
-/// scores -> (1 - shares)^(-1/2) scores, by the binomial series; false where it takes long to
-/// converge.
+/// scores -> (1 - shares)^(-1/2) scores, by the binomial series; false if it converges slowly.
 bool correct_by_series(const MatrixXd& shares, VectorXd& scores) {
   if (!(shares.norm() < kSmallShare)) return false;
   const double enough = 1e-17 * scores.norm();
@@ -79,7 +78,7 @@ Clustered cluster(const MatrixXd& rows, const VectorXd& residual, const MatrixXd
     result.covariance.noalias() += effect * effect.transpose();
     result.size += scores.squaredNorm();
     pooled += shares.squaredNorm();
-    // How much of each parameter's variance comes from this segment, were the residuals white.
+    // Share of each parameter's variance that this segment contributes if the residuals are white.
     whitened.noalias() = shares * whitening;
     for (Index p = 0; p < parameters; ++p) {
       const double part = whitened.col(p).dot(whitening.col(p));

@@ -7,25 +7,25 @@
 
 namespace jointid::identify {
 
-/// The sandwich of one clustering, its scores corrected for the freedom that the fit took from them
-/// (CR2: Bell and McCaffrey 2002).
+/// The sandwich of one clustering. The scores are corrected for the freedom that the fit took from
+/// them (CR2: Bell and McCaffrey 2002).
 struct Clustered {
   std::int64_t segments = 0;
   Eigen::MatrixXd covariance;
-  Eigen::VectorXd freedom;  ///< behind each parameter's variance (Satterthwaite)
-  double size = 0.0;        ///< of all corrected scores, squared
+  Eigen::VectorXd freedom;  ///< degrees of freedom of each parameter's variance (Satterthwaite)
+  double size = 0.0;        ///< sum of squares of all corrected scores
   double pooled_freedom = 0.0;
 };
 
-/// The directions that `whitening` makes of the Jacobian's rows: a row each, a column a direction.
+/// The rows of the Jacobian in the directions of `whitening`, one column per direction.
 Eigen::MatrixXd whitened_rows(const Eigen::Ref<const Eigen::MatrixXd>& jacobian,
                               const Eigen::MatrixXd& whitening);
 
-/// Of whitened rows; segments are from one cut to the next.
+/// From whitened rows; a segment extends from one cut to the next.
 Clustered cluster(const Eigen::MatrixXd& rows, const Eigen::VectorXd& residual,
                   const Eigen::MatrixXd& whitening, const std::vector<std::int64_t>& cuts);
 
-/// White's variances: each row a segment, its scores as they are.
+/// White's variances: each row is a segment, with uncorrected scores.
 Eigen::VectorXd variances_of_rows(const Eigen::MatrixXd& rows, const Eigen::VectorXd& residual,
                                   const Eigen::MatrixXd& whitening);
 

@@ -19,20 +19,22 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// Residuals that are white are refused as such in one of a hundred cases, by each of two tests.
+// Each of two tests rejects white residuals in one of a hundred cases.
 constexpr double kCertain = 0.01;
 constexpr double kCertainNormal = 2.326;
-constexpr double kOpposed = 0.2;  // correlation of neighbours; by their noise alone it is -0.5
+constexpr double kOpposed =
+    0.2;  // correlation of neighbours; the velocity's noise alone gives -0.5
 // A parameter that fewer segments determine borrows the missing degrees of freedom from the others.
 constexpr double kFewest = 5.0;
-constexpr double kKnown = 1e-10;     // of the largest singular value
-constexpr double kInvolved = 1e-3;   // of a direction that is not known
-constexpr double kExact = 1e-40;     // noise of a fit without residuals
-constexpr double kSingular = 1e-10;  // least eigenvalue of correlations that are inverted
+constexpr double kKnown = 1e-10;  // of the largest singular value
+constexpr double kInvolved =
+    1e-3;                         // share of an unknown direction from which a parameter is unknown
+constexpr double kExact = 1e-40;  // noise of a fit without residuals
+constexpr double kSingular = 1e-10;  // least eigenvalue of inverted correlation matrices
 // Of the largest singular value: two identical columns are fully correlated.
 constexpr double kIdentical = 1e-12;
 
-// Plain loops over a few parameters: as expressions of Eigen's they made a wheel 3 kB larger.
+// Plain loops over a few parameters: Eigen's expressions made a wheel 3 kB larger.
 
 /// values[i] *= factor[i] factor[j]
 void scale(MatrixXd& values, const double* factor) {
@@ -59,7 +61,7 @@ VectorXd norms_of(const MatrixXd& columns) {
   return norms;
 }
 
-/// The inverse of each; 1 of what is not above zero.
+/// The inverse of each value; 1 for values that are not above zero.
 VectorXd inverse_or_one(VectorXd sizes) {
   for (double& size : sizes) size = size > 0.0 ? 1.0 / size : 1.0;
   return sizes;
@@ -72,7 +74,7 @@ VectorXd errors_of(const MatrixXd& matrix, bool inverse) {
   return inverse ? inverse_or_one(std::move(errors)) : errors;
 }
 
-/// Ones on the diagonal, nothing beyond.
+/// Scales to ones on the diagonal, and clamps to -1 .. 1.
 void make_correlation(MatrixXd& matrix) {
   scale(matrix, errors_of(matrix, true).data());
   for (double& value : matrix.reshaped()) value = std::clamp(value, -1.0, 1.0);
@@ -80,8 +82,8 @@ void make_correlation(MatrixXd& matrix) {
 }
 
 /// Whether neighbouring windows, or windows of a segment, agree more than independent ones would,
-/// or far less: what the velocity's noise adds to one window it takes from the next, and sums over
-/// a segment know it.
+/// or much less. Noise of the velocity adds to one window and subtracts from the next; sums over a
+/// segment already contain this.
 bool contradicted(const VectorXd& residual, double pooled, double pooled_freedom) {
   const Index n = residual.size();
   double neighbours = 0.0;
@@ -93,12 +95,12 @@ bool contradicted(const VectorXd& residual, double pooled, double pooled_freedom
          neighbours < -kOpposed || pooled > limit;
 }
 
-/// The inverse of a covariance, whatever the units.
+/// The inverse of a covariance, independent of the units.
 MatrixXd inverse_of(MatrixXd covariance) {
   const VectorXd units = errors_of(covariance, true);
   scale(covariance, units.data());
   auto [inverse, vectors] = base::eigenpairs(covariance);
-  // Of segments fewer than parameters the correlations are barely a matrix of correlations.
+  // With fewer segments than parameters, the correlation matrix is nearly singular.
   for (double& value : inverse) value = 1.0 / std::max(value, kSingular);
   MatrixXd result = weighted_squares(vectors, inverse.data(), inverse.size());
   scale(result, units.data());
@@ -110,7 +112,7 @@ MatrixXd scaled_columns(MatrixXd matrix, const VectorXd& factor) {
   return matrix;
 }
 
-/// Correlations, condition and the least determined direction, of columns after centring.
+/// Correlations, condition and the least determined direction of the columns after centring.
 void correlate(MatrixXd triangle, const std::optional<Centre>& centre, Covariance& result) {
   if (centre) {
     for (Index i = 0; i < triangle.rows(); ++i) {
@@ -133,18 +135,18 @@ void correlate(MatrixXd triangle, const std::optional<Centre>& centre, Covarianc
   result.weakest = found.directions.col(least);
 }
 
-/// By how much variances are larger than those of white residuals of one size.
+/// Ratio of the variances to those of white residuals with one variance.
 struct Widening {
   VectorXd ratio;
-  VectorXd freedom;  ///< behind each variance
+  VectorXd freedom;  ///< of each variance
   bool white = true;
-  /// Of the parameters, by segments; none where the classical ones hold. Where few segments
-  /// determine a parameter, the classical ones have as much weight as the freedom that it borrows.
+  /// Correlations of the parameters from segments; none if the classical ones hold. If few segments
+  /// determine a parameter, the classical correlations have the weight of the borrowed freedom.
   std::optional<MatrixXd> correlation;
 };
 
-/// `whitening` takes the scores of the determined directions to unit variance: its own product,
-/// `unit`, is the covariance for residuals of unit variance.
+/// `whitening` scales the scores of the determined directions to unit variance. Its product with
+/// itself, `unit`, is the covariance for residuals of unit variance.
 Widening widening_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd& residual,
                      const MatrixXd& whitening, const MatrixXd& unit, const Cuts& cuts) {
   const Index parameters = whitening.cols();
@@ -182,7 +184,7 @@ Widening widening_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd&
   }
   double weight = 1.0;
   for (Index i = 0; i < parameters; ++i) {
-    // One is lost to the mean that the fit took from each direction.
+    // One degree is lost to the mean that the fit removed from each direction.
     const double mine = std::max(own[i] / ways - 1.0, 1.0);
     const double borrowed = std::max(kFewest - mine, 0.0);
     const double together = mine + borrowed;
@@ -192,7 +194,7 @@ Widening widening_of(const Eigen::Ref<const MatrixXd>& jacobian, const VectorXd&
     weight = std::min(weight, mine / together);
   }
   result.white = false;
-  // The mean of two matrices of correlations; with one weight for all pairs it is one, too.
+  // The mean of two correlation matrices with one weight for all pairs is a correlation matrix.
   MatrixXd classical = unit;
   make_correlation(covariance);
   make_correlation(classical);
@@ -240,7 +242,7 @@ Covariance covariance_of(const Eigen::Ref<const MatrixXd>& jacobian, const Vecto
     const double root = std::sqrt(stretch.ratio[i]);
     wider[i] = root * size;
     of_all[i] = 1.0 / (factor[i] * root * std::max(size, kExact));
-    unknown[i] = left <= 0;  // nothing is left to estimate the noise
+    unknown[i] = left <= 0;  // there is no data left to estimate the noise
     for (Index k = known; k < parameters; ++k) {
       unknown[i] = unknown[i] || std::fabs(found.directions(i, k)) > kInvolved;
     }

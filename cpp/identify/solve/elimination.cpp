@@ -10,14 +10,15 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr int kPasses = 2;  // of a balance that is not linear, each about the one before
+constexpr int kPasses =
+    2;  // iterations for a balance that is not linear, each about the previous result
 
-/// Coefficients split into fixed (moved to the target) and free.
+/// Coefficients split into fixed ones (moved to the target) and free ones.
 struct Reduced {
   Eigen::MatrixXd columns;
   Eigen::VectorXd target;
   std::vector<Eigen::Index>
-      free;  ///< coefficients, without the gain when that is eliminated with the rest
+      free;  ///< coefficients, without the gain if that is eliminated with the others
 };
 
 Reduced reduce(const Balance& balance, const search::Domain& domain, bool keep_gain) {
@@ -56,8 +57,8 @@ Eigen::VectorXd solve_box(const Reduced& r, const search::Domain& domain,
   return coefficients;
 }
 
-/// Free gain, residual in the sensor's terms: min |target u - columns g - sensor|, u = 1/gain, g =
-/// c u.
+/// Free gain, residual in the units of the sensor: min |target u - columns g - sensor|, u = 1/gain,
+/// g = c u.
 Eigen::VectorXd solve_ratio(const Balance& balance, const Reduced& r, const search::Domain& domain,
                             Eigen::VectorXd coefficients) {
   const Eigen::Index gain = balance.gain;
@@ -105,7 +106,7 @@ Eigen::VectorXd best_coefficients(const Balance& balance, const search::Domain& 
   const Eigen::VectorXd best =
       ratio ? solve_ratio(balance, reduce(balance, domain, false), domain, start)
             : solve_box(reduce(balance, domain, true), domain, start);
-  // Rounding may leave a bound by an ulp.
+  // Rounding may exceed a bound by an ulp.
   return best.cwiseMax(domain.lower.head(p)).cwiseMin(domain.upper.head(p));
 }
 

@@ -8,23 +8,22 @@
 
 namespace jointid::identify {
 
-/// A linear balance for given shapes, in any orthonormal basis: columns of all coefficients.
+/// A linear balance for these shapes, in any orthonormal basis, with columns of all coefficients.
 struct Balance {
   const Eigen::MatrixXd& columns;
   const Eigen::VectorXd& target;
   Residual residual;
-  Eigen::Index gain;  ///< position of sensor_gain, or -1
+  Eigen::Index gain;  ///< index of sensor_gain, or -1
 };
 
 /// The best coefficients of a balance, within the domain; see below.
 Eigen::VectorXd best_coefficients(const Balance& balance, const search::Domain& domain);
 
-/// The best coefficients for given shapes, within the domain.
+/// The best coefficients for these shapes, within the domain.
 ///
-/// residual torque: bounded least squares. residual sensor: linear in u = 1/gain and g = c/gain,
-/// where the box of each c becomes lower u <= g <= upper u. Near the best only where the balance is
-/// not linear. Throws std::invalid_argument when the
-/// gain's bounds contain zero.
+/// Residual torque: bounded least squares. Residual sensor: linear in u = 1/gain and g = c/gain,
+/// where the box of each c becomes lower u <= g <= upper u. If the balance is not linear, the
+/// result is only near the best. Throws std::invalid_argument if the gain's bounds contain zero.
 Eigen::VectorXd best_coefficients(const PenaltyFunction& penalty, const Eigen::VectorXd& shapes,
                                   const search::Domain& domain,
                                   const base::Cancel* cancel = nullptr);

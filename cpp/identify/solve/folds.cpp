@@ -11,9 +11,9 @@ namespace jointid::identify {
 namespace {
 
 constexpr std::size_t kLanes = 8;
-constexpr double kRidge = 1e-9;  // of columns of unit size
+constexpr double kRidge = 1e-9;  // of columns of unit norm
 
-/// Sums the products of each row's values: of values 0 .. i with value i, at i * width.
+/// Sums the products of each row's values: of values 0 .. i with value i, stored at i * width.
 JOINTID_CLONES void sum_products(const double* rows, std::size_t count, std::size_t width,
                                  double* sums) {
   for (std::size_t i = 0; i < width; ++i) {
@@ -27,7 +27,7 @@ JOINTID_CLONES void sum_products(const double* rows, std::size_t count, std::siz
   }
 }
 
-/// Lanes of the working arrays: `lower` is a triangle row after row, `target` its right side.
+/// Lanes of the working arrays: `lower` is a triangle stored by rows, `target` its right side.
 struct Systems {
   std::size_t size;
   std::size_t lanes;
@@ -39,7 +39,7 @@ std::size_t pair_of(std::size_t i, std::size_t j) {
   return i * (i + 1) / 2 + j;
 }
 
-/// Solves all lanes' systems at once, by Cholesky's factors; both arrays are used up.
+/// Solves the systems of all lanes at once, by Cholesky factors. Both arrays are overwritten.
 JOINTID_CLONES void solve_all(const Systems& of) {
   const std::size_t lanes = of.lanes;
   const auto at = [&](std::size_t i, std::size_t j) {
@@ -56,7 +56,7 @@ JOINTID_CLONES void solve_all(const Systems& of) {
         right[l] -= left[l] * known[l];
       }
     }
-    for (std::size_t l = 0; l < lanes; ++l) {  // the diagonal keeps the inverse of the root
+    for (std::size_t l = 0; l < lanes; ++l) {  // the diagonal stores the inverse of the root
       own[l] = 1.0 / std::sqrt(own[l] > kRidge * kRidge ? own[l] : kRidge * kRidge);
       right[l] *= own[l];
     }
@@ -82,7 +82,7 @@ JOINTID_CLONES void solve_all(const Systems& of) {
   }
 }
 
-/// result -= factor * products * first * second, lane by lane.
+/// result -= factor * products * first * second, in each lane.
 JOINTID_CLONES void take_away(double factor, const double* products, const double* first,
                               const double* second, std::size_t lanes, double* result) {
   for (std::size_t l = 0; l < lanes; ++l) {

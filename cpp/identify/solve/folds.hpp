@@ -1,6 +1,7 @@
 #pragma once
-// Cross-validated least squares of one target on any of many columns: blocks of rows are left out
-// in turn. Inner products of every block are kept, so that a choice of columns costs no rows.
+// Cross-validated least squares of one target on any subset of many columns. Blocks of rows are
+// left out in turn. The inner products of every block are stored, so another choice of columns
+// needs no rows.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -11,21 +12,21 @@ namespace jointid::identify {
 
 class Folds {
  public:
-  /// `rows`: `width` values each, one row after the other; the last column is the target. Block b
-  /// has the rows edges[b] .. edges[b + 1] - 1.
+  /// `rows`: `width` values per row; the last column is the target. Block b has the rows edges[b]
+  /// .. edges[b + 1] - 1.
   Folds(const double* rows, std::size_t width, const std::vector<std::int64_t>& edges);
 
   [[nodiscard]] Eigen::Index blocks() const { return static_cast<Eigen::Index>(blocks_); }
   [[nodiscard]] std::size_t width() const { return width_; }
-  /// Sum of squares in each block of what these columns, fitted to the other blocks, leave of the
-  /// target. All columns count as if they had unit size, over all blocks.
+  /// Sum of squared residuals of the target in each block, with these columns fitted to the other
+  /// blocks. All columns are scaled to unit norm over all blocks.
   [[nodiscard]] Eigen::VectorXd misfit(const std::vector<std::size_t>& columns) const;
 
  private:
   std::size_t width_;
   std::size_t blocks_;
-  std::size_t lanes_;             ///< blocks side by side, padded
-  std::vector<double> products_;  ///< of columns j <= i: pair after pair, its lanes side by side
+  std::size_t lanes_;             ///< blocks in parallel, padded
+  std::vector<double> products_;  ///< of columns j <= i: pair after pair, with adjacent lanes
   std::vector<double> others_;    ///< the same over all other blocks
 };
 

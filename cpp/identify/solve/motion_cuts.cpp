@@ -6,8 +6,8 @@ namespace jointid::identify {
 
 namespace {
 
-/// The first windows between which the joint moves one way for at least half a length, all that
-/// turns back sooner left with them.
+/// The first windows of the pieces in which the joint moves in one direction for at least half a
+/// length. Motion that turns back sooner joins them.
 std::vector<Eigen::Index> reversals(const MovingWindows& w, Eigen::Index first, Eigen::Index last,
                                     double length) {
   std::vector<Eigen::Index> found{first};
@@ -32,7 +32,7 @@ std::vector<std::int64_t> motion_cuts(const MovingWindows& w, Eigen::Index first
   const auto turns = reversals(w, first, last, length);
   std::vector<double> moved;
   for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
-    // By moved time: standing still was left out, and is no motion.
+    // In time of motion: standing still was left out and does not count.
     moved.clear();
     double sum = 0.0;
     for (Eigen::Index i = turns[k]; i < turns[k + 1]; ++i) {

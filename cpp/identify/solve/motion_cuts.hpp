@@ -1,6 +1,6 @@
 #pragma once
-// Where the windows of a motion are cut into segments: between reversals, merged or divided to a
-// usual length.
+// Division of a motion's windows into segments: between reversals, merged or divided to a usual
+// length.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -8,15 +8,15 @@
 
 namespace jointid::identify {
 
-/// Windows in the order of time: start and stop of each, and how far the joint travels in it.
+/// Windows in the order of time: start and stop of each, and the travel of the joint in it.
 struct MovingWindows {
   Eigen::Ref<const Eigen::VectorXd> start;   ///< [s]
   Eigen::Ref<const Eigen::VectorXd> stop;    ///< [s]
   Eigen::Ref<const Eigen::VectorXd> travel;  ///< [rad or m]
 };
 
-/// Ends of the segments of one recording's windows, `first` to `last` - 1: each is the first window
-/// of the next one.
+/// Ends of the segments of one recording's windows, `first` to `last` - 1. Each end is the first
+/// window of the next segment.
 std::vector<std::int64_t> motion_cuts(const MovingWindows& windows, Eigen::Index first,
                                       Eigen::Index last, double length);
 

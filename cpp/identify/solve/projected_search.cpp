@@ -14,25 +14,27 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr Eigen::Index kFewWindows = 96;   // of the scan; more of them only if it needs them
-constexpr Eigen::Index kAParameter = 8;    // windows of the scan for each parameter
-constexpr Eigen::Index kMostColumns = 32;  // beyond, their basis costs more than compression
-constexpr Eigen::Index kMostShapes = 2;    // beyond, the scan does
-constexpr int kLine = 32;                  // intervals over the range of a single shape
-constexpr int kSpeeds = 12;                // over a speed's, of two shapes
-constexpr int kExponents = 6;              // over an exponent's
+constexpr Eigen::Index kFewWindows = 96;  // windows of the scan, or more if it needs them
+constexpr Eigen::Index kAParameter = 8;   // windows of the scan for each parameter
+constexpr Eigen::Index kMostColumns =
+    32;  // with more columns, their basis costs more than compression
+constexpr Eigen::Index kMostShapes = 2;  // with more shapes, the scan costs more
+constexpr int kLine = 32;                // intervals over the range of a single shape
+constexpr int kSpeeds = 12;              // over the range of a speed, of two shapes
+constexpr int kExponents = 6;            // over the range of an exponent
 constexpr std::size_t kValleys = 3;
-constexpr double kTold = 50.0;      // variances that tell one point of the scan from another
-constexpr double kSettled = 1e-13;  // of the penalty: what the last step but one promises at most
-constexpr double kRough = 1e-4;     // the same over some windows, which only give a start
+constexpr double kTold = 50.0;  // variances that separate one point of the scan from another
+constexpr double kSettled =
+    1e-13;  // of the penalty: the largest reduction that the last step but one may promise
+constexpr double kRough = 1e-4;  // the same over some windows, which only give a start
 constexpr int kSteps = 60;
 constexpr int kRoughSteps = 8;
 constexpr const char* kAtEnd = "the optimum lies near the end of a shape's range";
-constexpr std::size_t kLarge = 1U << 17U;  // nodes: an evaluation beyond must be interruptible
+constexpr std::size_t kLarge = 1U << 17U;  // nodes: a longer evaluation must be interruptible
 
 using Shapes = Eigen::VectorXd;
 
-/// Runs an evaluation so that Ctrl-C ends it: a long one beside the thread that polls.
+/// Runs an evaluation so that Ctrl-C ends it. A long one runs on a worker while this thread polls.
 template <class Work>
 void run(const Projection& projection, base::Pool& pool, const Work& work) {
   if (projection.nodes() < kLarge) {
@@ -62,7 +64,8 @@ class ProjectedSearch {
     if (scales_.size() == 1) steps_[0] = kLine;
   }
 
-  /// Starts of the valleys, in shares; a reason where the windows cannot tell.
+  /// Starts of the valleys, as shares of the ranges. Returns a reason if the windows cannot
+  /// separate them.
   std::string find_valleys(const Projection& few, std::vector<Eigen::VectorXd>& result) {
     const auto values = scan(few);
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
@@ -78,7 +81,7 @@ class ProjectedSearch {
       for (std::size_t s = 0; s < scales_.size(); ++s) {
         const bool lowest = at[s] == 0;
         const bool end = lowest || at[s] == steps_[s];
-        // In the root of a shape the penalty is level at 0, and a step cannot tell.
+        // In the root of a shape the penalty is flat at 0, so a step gives no information.
         if (end && (scales_.size() == 1 || (lowest && scales_[s].is_root()))) return kAtEnd;
       }
       result.push_back(scales_.size() == 1 ? lowest_of_parabola(values, i) : shares(at));
@@ -86,23 +89,23 @@ class ProjectedSearch {
     return {};
   }
 
-  /// Whether the windows tell two values by more than chance.
+  /// Whether two values differ by more than chance over these windows.
   [[nodiscard]] bool is_told(const Projection& few, double value, double least) const {
     const auto spare = static_cast<double>(few.windows() - penalty_.parameters());
     return (value / least - 1.0) * spare > kTold;
   }
 
-  /// Whether the windows contradict what all of them together found.
+  /// Whether some windows contradict the result of all windows.
   bool contradict(const Projection& few, const Found& rough, const Found& found) {
     return is_told(few, evaluate(few, found.shares).value, rough.point.value);
   }
 
-  /// Gauss-Newton steps within the ranges, damped where one does not lead down.
+  /// Gauss-Newton steps within the ranges, damped where a step does not reduce the penalty.
   Found descend(const Projection& projection, const Eigen::VectorXd& start, int most,
                 double settled) {
     Found best{start, evaluate(projection, start), false};
     double damping = 0.0;
-    Eigen::MatrixXd secant;  // of a single shape: the gradient's own slope
+    Eigen::MatrixXd secant;  // for a single shape: the slope of the gradient
     const auto damp = [&] {
       if (damping > 1e6) return false;
       damping = std::max(1e-2, 10.0 * damping);
@@ -114,7 +117,7 @@ class ProjectedSearch {
       const double promised =
           -best.point.gradient.dot(move) -
           0.5 * move.dot((secant.size() > 0 ? secant : best.point.curvature) * move);
-      if (promised < -settled * best.point.value) {  // an end bent the step
+      if (promised < -settled * best.point.value) {  // the end of a range cut the step
         if (!damp()) break;
         continue;
       }
@@ -123,7 +126,7 @@ class ProjectedSearch {
       if (last && promised <= 0.0) break;
       Found next{best.shares + move, {}, best.settled};
       next.point = evaluate(projection, next.shares);
-      if (last) {  // rounding decides which value is lower, the gradient tells the place
+      if (last) {  // rounding decides which value is lower, but the gradient gives the place
         if (next.point.value <= best.point.value * (1.0 + settled)) best = std::move(next);
         break;
       }
@@ -178,7 +181,7 @@ class ProjectedSearch {
     Eigen::VectorXd result(static_cast<Eigen::Index>(place.size()));
     for (std::size_t s = 0; s < place.size(); ++s) {
       const double part = static_cast<double>(place[s]) / steps_[s];
-      // Slow friction lies at the low end of a speed's range, which may span two decades.
+      // Slow friction lies at the low end of a speed's range, which may cover two decades.
       const bool finer = scales_.size() > 1 && steps_[s] == kSpeeds && !scales_[s].is_root();
       result[static_cast<Eigen::Index>(s)] = finer ? part * part : part;
     }
@@ -196,7 +199,7 @@ class ProjectedSearch {
     return values;
   }
 
-  /// No neighbour, along the edges or across, is lower; of equal ones, the first.
+  /// Whether no neighbour, along the edges or across, is lower. Of equal ones, the first counts.
   [[nodiscard]] bool is_valley(const std::vector<double>& values, std::size_t point) const {
     const auto at = place(point);
     const int second = scales_.size() > 1 ? 1 : 0;
@@ -245,7 +248,7 @@ class ProjectedSearch {
     Eigen::MatrixXd curvature = secant.size() > 0 ? secant : from.point.curvature;
     curvature.diagonal() *= 1.0 + damping;
     Eigen::VectorXd right = -gradient;
-    for (Eigen::Index i = 0; i < count; ++i) {  // held at an end
+    for (Eigen::Index i = 0; i < count; ++i) {  // fixed at an end
       const bool low = from.shares[i] <= 0.0 && gradient[i] >= 0.0;
       const bool high = from.shares[i] >= 1.0 && gradient[i] <= 0.0;
       if (!low && !high && curvature(i, i) > 0.0) continue;
@@ -265,7 +268,8 @@ class ProjectedSearch {
   int evaluations_ = 0;
 };
 
-/// Windows spread evenly but out of step with any period of the motion; none: too few for that.
+/// Evenly spread windows that are out of step with any period of the motion; none if there are too
+/// few.
 std::vector<Eigen::Index> some_windows(const Penalty& penalty) {
   const Eigen::Index wanted = std::max(kFewWindows, kAParameter * penalty.parameters());
   const Eigen::Index stride = penalty.window_count() / wanted;
@@ -280,7 +284,7 @@ std::vector<Eigen::Index> some_windows(const Penalty& penalty) {
   return result;
 }
 
-/// Why a penalty is not one to search so; empty where it is.
+/// Reason why this search does not suit a penalty; empty if it does.
 std::string refusal(const Penalty& penalty, const search::Domain& domain) {
   Eigen::Index shapes = 0;
   for (Eigen::Index i = penalty.coefficients(); i < penalty.parameters(); ++i) {

@@ -11,17 +11,18 @@
 
 namespace jointid::identify {
 
-/// What the projected search found, or why it leaves the penalty to the compressed one.
+/// Result of the projected search, or the reason why the compressed penalty must be minimised
+/// instead.
 struct Projected {
   std::optional<SeparableResult> found;
-  std::string reason;  ///< empty where something was found
+  std::string reason;  ///< empty if an optimum was found
 };
 
-/// A scan of the shapes' ranges over some of the windows, then Gauss-Newton steps over all of them
-/// from each valley found. Nothing where some windows cannot tell the valleys: an optimum at the
-/// end of a range, a penalty nearly the same everywhere, too few windows, many valleys. Nothing,
-/// too, without a free shape, with running sums, and where the balance is not linear. Then minimise
-/// the compressed penalty.
+/// Scans the shapes' ranges over some of the windows, then makes Gauss-Newton steps over all
+/// windows from each valley. Finds nothing if some windows cannot separate the valleys: an optimum
+/// at the end of a range, a penalty that is nearly constant, too few windows, many valleys. Also
+/// finds nothing without a free shape, with running sums, or if the balance is not linear. Minimise
+/// the compressed penalty then.
 Projected minimise_projected(const Penalty& penalty, const search::Domain& domain,
                              base::Pool& pool);
 

@@ -10,7 +10,7 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr double kDependent = 1e-14;  // of a column's norm: what is left of it is rounding
+constexpr double kDependent = 1e-14;  // of a column's norm: a smaller remainder is rounding
 
 FrictionNodes pick(const FrictionNodes& nodes, const std::vector<Eigen::Index>& windows) {
   FrictionNodes result;
@@ -68,8 +68,8 @@ Projection::Projection(const Penalty& penalty, const search::Domain& domain,
   }
 }
 
-/// Gram and Schmidt, twice, which is enough (Giraud and others 2005). A column that depends on
-/// those before it adds no direction.
+/// Gram and Schmidt, twice, which suffices (Giraud and others 2005). A column that depends on those
+/// before it adds no direction.
 Eigen::VectorXd Projection::append(Eigen::VectorXd column) {
   cancel_.check();
   Eigen::VectorXd result = Eigen::VectorXd::Zero(basis_.cols());
@@ -157,7 +157,7 @@ Eigen::VectorXd Projection::solve(const Frame& frame, Eigen::VectorXd& theta) co
       Balance{frame.columns, target_, penalty_.residual(), penalty_.gain_index()}, domain_);
   Eigen::VectorXd residual = target_ - frame.columns * theta.head(p);
   if (penalty_.residual() == Residual::sensor) {
-    // Fixed coefficients are in the target; the gain's column counts wherever it is free.
+    // Fixed coefficients are part of the target. The gain's column counts if it is free.
     residual /= theta[penalty_.gain_index()];
   }
   return residual;
@@ -195,7 +195,7 @@ ProjectedPoint Projection::at(const Eigen::VectorXd& shapes) const {
   }
   result.gradient = 2.0 * inside.transpose() * residual;
 
-  // Coefficients that no bound holds follow the shapes.
+  // Coefficients that are not at a bound follow the shapes.
   Eigen::MatrixXd follow(residual.size(), p);
   Eigen::Index followers = 0;
   for (Eigen::Index j = 0; j < p; ++j) {

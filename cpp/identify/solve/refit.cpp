@@ -14,10 +14,11 @@ namespace jointid::identify {
 namespace {
 
 constexpr int kMostSteps = 60;
-constexpr double kNear = 2e-5;    // standard errors left to go
-constexpr double kEnough = 1e-4;  // of an expected miss; the last step need not be checked then
+constexpr double kNear = 2e-5;    // remaining distance in standard errors
+constexpr double kEnough = 1e-4;  // of an expected error; then the last step need not be checked
 constexpr double kFloor = 1e-13;  // damping that never disturbs, and keeps the equations solvable
-constexpr std::int64_t kKept = 1 << 20;  // samples up to which the parts are kept between steps
+constexpr std::int64_t kKept =
+    1 << 20;  // largest number of samples at which the parts are kept between steps
 
 class Windows {
  public:
@@ -50,7 +51,8 @@ class Windows {
       each[i].penalty = residual.squaredNorm();
     });
     Balanced all = each[0];
-    for (std::size_t i = 1; i < each.size(); ++i) {  // always in this order: always the same bits
+    for (std::size_t i = 1; i < each.size();
+         ++i) {  // always in this order, so always the same bits
       all.square += each[i].square;
       all.gradient += each[i].gradient;
       all.penalty += each[i].penalty;
@@ -65,7 +67,7 @@ class Windows {
   std::vector<std::unique_ptr<Penalty>> kept_;
 };
 
-/// The damped step over the parameters that may move: free, and not held at a bound.
+/// The damped step over the movable parameters: free, and not pressed against a bound.
 Eigen::VectorXd step_from(const Balanced& sums, const search::Domain& domain,
                           const Eigen::VectorXd& theta, double damping) {
   std::vector<Eigen::Index> moving;
@@ -97,7 +99,7 @@ Eigen::VectorXd step_from(const Balanced& sums, const search::Domain& domain,
   return step;
 }
 
-/// The largest relative change of what the residuals are not linear in.
+/// The largest relative change of a parameter in which the residuals are not linear.
 double nonlinearity(const PenaltyParts& parts, const Eigen::VectorXd& at,
                     const Eigen::VectorXd& moved) {
   double largest = 0.0;
@@ -125,12 +127,13 @@ Eigen::VectorXd descend(const std::function<Balanced(const Eigen::VectorXd&)>& a
     const Eigen::VectorXd step = step_from(sums, domain, best, damping);
     const Eigen::VectorXd trial = (best + step).cwiseMax(domain.lower).cwiseMin(domain.upper);
     const Eigen::VectorXd moved = trial - best;
-    const bool cut = trial != best + step;  // by a bound: what is left will move otherwise
+    const bool cut =
+        trial != best + step;  // by a bound: the remaining parameters will move differently
     // In standard errors: the length in the metric of the penalty.
     const double way = std::sqrt(std::max(0.0, moved.dot(sums.square * moved)) * freedom /
                                  std::max(sums.penalty, std::numeric_limits<double>::min()));
-    // Each step is shorter by about as much as the one before was; the first one misses by what the
-    // residuals are nonlinear over it.
+    // Each step is shorter by about the same factor as the one before. The error of the first one
+    // is the nonlinearity of the residuals over it.
     const double shrunk = std::isfinite(before) ? way / before : nonlinearity(alike, best, moved);
     const double left = way * std::min(1.0, shrunk);
     if (way < kNear || (damping == kFloor && !cut && (left < kEnough || shrunk < share)))

@@ -1,6 +1,6 @@
 #pragma once
-// The minimum over other windows, from the minimum over some: near by, so that a few Gauss-Newton
-// steps reach it.
+// The minimum over other windows, from a known minimum. The two are near, so a few Gauss-Newton
+// steps suffice.
 
 #include <Eigen/Core>
 #include <functional>
@@ -10,20 +10,20 @@
 
 namespace jointid::identify {
 
-/// What a step of Gauss-Newton needs at one point: sums over the windows.
+/// Sums over the windows for a Gauss-Newton step at one point.
 struct Balanced {
   Eigen::MatrixXd square;    ///< J'J
   Eigen::VectorXd gradient;  ///< J'r
   double penalty = 0.0;
 };
 
-/// Gauss-Newton in a box, each step from sums over the parts, damped when one leads uphill; ends
-/// when the way left is below 2e-5 standard errors.
+/// Gauss-Newton in a box. Each step comes from sums over the parts, and is damped if it increases
+/// the penalty. Ends when the remaining distance is below 2e-5 standard errors.
 Eigen::VectorXd refit(const PenaltyParts& parts, const search::Domain& domain,
                       const Eigen::VectorXd& start, base::Pool* pool);
 
-/// The same from such sums, of which `first` are those at the start, within the domain. `alike` has
-/// the same parameters. Ends, too, where the next step is expected to be less than `share` of this.
+/// The same from such sums; `first` are those at the start, within the domain. `alike` has the same
+/// parameters. Also ends when the next step is expected to be less than `share` of this one.
 Eigen::VectorXd descend(const std::function<Balanced(const Eigen::VectorXd&)>& at,
                         const PenaltyParts& alike, Eigen::Index windows,
                         const search::Domain& domain, const Eigen::VectorXd& start,

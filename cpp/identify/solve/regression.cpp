@@ -12,15 +12,15 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr Eigen::Index kRows = 512;    // of a block: it stays in the cache
-constexpr Eigen::Index kTask = 16384;  // rows that one task brings down to one triangle
+constexpr Eigen::Index kRows = 512;    // rows per block: it stays in the cache
+constexpr Eigen::Index kTask = 16384;  // rows that one task reduces to one triangle
 
 std::size_t tasks(Eigen::Index rows) {
   return static_cast<std::size_t>(std::max<Eigen::Index>(1, (rows + kTask - 1) / kTask));
 }
 
-// Of the condition of columns that are clearly independent: what is rank and what is rounding is
-// then no question, and all ways to solve agree.
+// Largest condition of clearly independent columns. Below it, rank and rounding are not confused,
+// and all solution methods agree.
 constexpr double kIndependent = 1e6;
 
 }  // namespace
@@ -64,8 +64,8 @@ std::optional<std::pair<Eigen::VectorXd, double>> solve_independent(
   const Eigen::VectorXd wanted = triangle.col(target);
   const auto [upper, right] = base::reduced(regressors * norms.cwiseInverse().asDiagonal(), wanted);
   const Eigen::MatrixXd inverse = base::solve_upper(upper, Eigen::MatrixXd::Identity(count, count));
-  // Both have at least the norms that make the condition; the scaled columns' is the root of
-  // their number.
+  // Frobenius norms, which are upper bounds of the norms in the condition; that of the scaled
+  // columns is the root of their number.
   const double condition = std::sqrt(static_cast<double>(count)) * inverse.norm();
   if (!(condition < kIndependent)) return std::nullopt;
   const Eigen::VectorXd found = base::solve_upper(upper, right).cwiseQuotient(norms);

@@ -1,13 +1,13 @@
 #pragma once
-// Steps over a shape's domain that matter equally.
+// Steps of equal effect over a shape's domain.
 
 #include <algorithm>
 #include <cmath>
 
 namespace jointid::identify {
 
-/// The Gaussian decay depends on s v^2, so its shape takes a square-root scale; speeds and
-/// exponents take a linear scale.
+/// The Gaussian decay depends on s v^2, so its shape has a square-root scale. Speeds and exponents
+/// have a linear scale.
 class Scale {
  public:
   Scale(double lower, double upper, bool root)
@@ -18,7 +18,7 @@ class Scale {
     return (even(shape) - even(lower_)) / (even(upper_) - even(lower_));
   }
   [[nodiscard]] double at(double share) const {
-    if (share <= 0.0) return lower_;  // the bounds to the last bit
+    if (share <= 0.0) return lower_;  // exactly the bounds
     if (share >= 1.0) return upper_;
     if (!root_) return lower_ + share * (upper_ - lower_);
     const double value = std::sqrt(lower_) + share * (std::sqrt(upper_) - std::sqrt(lower_));

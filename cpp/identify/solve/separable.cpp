@@ -18,16 +18,16 @@ namespace jointid::identify {
 namespace {
 
 constexpr int kScan = 64;  // intervals over the domain of a single free shape
-constexpr int kGrid = 16;  // over each of several
+constexpr int kGrid = 16;  // intervals over the domain of each of several
 constexpr int kFew = 4;
 constexpr std::size_t kPolished = 3;  // best points of the grid that are polished
 constexpr double kNarrow = 1e-9;      // of a scale's range: tolerance of the lowest point
-constexpr double kBeside = 1e-5;      // the same, where the slope tells it from there on
-constexpr double kLevel = 1e-14;      // the last step along the slope
+constexpr double kBeside = 1e-5;      // the same, if the slope refines it from there on
+constexpr double kLevel = 1e-14;      // size of the last step along the slope
 constexpr int kSlopes = 40;
-constexpr double kRounding = 1e-12;  // of a penalty: values do not tell points so near
+constexpr double kRounding = 1e-12;  // of a penalty: smaller differences of values are rounding
 
-/// The penalty as a function of the free shapes alone.
+/// The penalty as a function of only the free shapes.
 class Eliminated {
  public:
   Eliminated(const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool)
@@ -39,7 +39,7 @@ class Eliminated {
 
   [[nodiscard]] const std::vector<Eigen::Index>& free() const { return free_; }
 
-  /// All parameters for given values of the free shapes.
+  /// All parameters for these values of the free shapes.
   [[nodiscard]] Eigen::VectorXd full(const std::vector<double>& shapes) const {
     Eigen::VectorXd theta = domain_.lower;
     for (std::size_t i = 0; i < free_.size(); ++i) theta[free_[i]] = shapes[i];
@@ -49,7 +49,7 @@ class Eliminated {
     return theta;
   }
 
-  /// Takes the point if it is no worse.
+  /// Takes the point if its penalty is not higher.
   void offer(const Eigen::VectorXd& theta, SeparableResult& result) const {
     const double value = penalty_(theta, &pool_.cancel());
     ++result.evaluations;
@@ -58,11 +58,11 @@ class Eliminated {
     result.penalty = value;
   }
 
-  /// Takes a point where the penalty is level: rounding decides which value is lower.
+  /// Takes a point where the penalty is flat: rounding decides which value is lower.
   void settle(const Eigen::VectorXd& theta, SeparableResult& result) const {
     const double value = penalty_(theta, &pool_.cancel());
     ++result.evaluations;
-    // Also a value that is no number is no better one.
+    // NaN is not lower, either.
     if (result.best.size() > 0 && !(value <= result.penalty * (1.0 + kRounding))) return;
     result.best = theta;
     result.penalty = value;
@@ -70,8 +70,8 @@ class Eliminated {
 
   [[nodiscard]] bool is_linear() const { return penalty_.is_linear(); }
 
-  /// The penalty's derivative by the only free shape, the coefficients at their best: they change
-  /// with it, but to first order the penalty does not change with them.
+  /// The penalty's derivative by the only free shape, at the best coefficients. They change with
+  /// it, but to first order the penalty does not change with them.
   [[nodiscard]] double slope(double shape) const {
     Eigen::VectorXd residual;
     Eigen::MatrixXd jacobian;
@@ -79,7 +79,7 @@ class Eliminated {
     return 2.0 * jacobian.col(free_[0]).dot(residual);
   }
 
-  /// Penalties at many points, over the threads.
+  /// Penalties at many points, on the threads.
   [[nodiscard]] std::vector<double> values(const std::vector<std::vector<double>>& points) const {
     std::vector<double> result(points.size());
     if (penalty_.is_cheap()) {
@@ -109,14 +109,14 @@ std::vector<double> scan(const Eliminated& reduced, const Scale& scale, Separabl
   return reduced.values(points);
 }
 
-/// The interval between the neighbours of the scan's best point, in shares of the range.
+/// The interval between the neighbours of the scan's best point, as shares of the range.
 search::Interval lowest(const std::vector<double>& scanned) {
   const auto best =
       static_cast<double>(std::min_element(scanned.begin(), scanned.end()) - scanned.begin());
   return {std::max(0.0, best - 1.0) / kScan, std::min<double>(kScan, best + 1.0) / kScan};
 }
 
-/// Whether the scan falls all the way from a place to its best point: the two are in one valley.
+/// Whether the scan falls all the way from a place to its best point. Then both are in one valley.
 bool falls_from(const std::vector<double>& scanned, double from) {
   const double share = std::clamp(from, 0.0, 1.0);
   const auto best = std::min_element(scanned.begin(), scanned.end());
@@ -127,8 +127,8 @@ bool falls_from(const std::vector<double>& scanned, double from) {
   return true;
 }
 
-/// Where the penalty is level between two points, if its slopes there say that it is; by false
-/// position (Illinois). Values tell the lowest point to the root of their rounding only, slopes to
+/// The point between two others where the penalty is flat, if its slopes bracket one; by false
+/// position (Illinois). Values give the lowest point only to the root of their rounding, slopes to
 /// their rounding itself.
 std::optional<double> level_between(const Eliminated& reduced, const Scale& scale,
                                     search::Interval interval, base::Pool& pool,
@@ -143,7 +143,7 @@ std::optional<double> level_between(const Eliminated& reduced, const Scale& scal
   double rises = slope(right);
   if (!(falls < 0.0 && rises > 0.0)) return std::nullopt;
   double found = left;
-  int side = 0;  // which end the last point took the place of
+  int side = 0;  // the end that the last point replaced
   for (int i = 0; i < kSlopes; ++i) {
     const double next = (left * rises - right * falls) / (rises - falls);
     const double here = slope(next);
@@ -153,7 +153,7 @@ std::optional<double> level_between(const Eliminated& reduced, const Scale& scal
     if (here < 0.0) {
       left = next;
       falls = here;
-      if (side < 0) rises *= 0.5;  // the other end must move, too
+      if (side < 0) rises *= 0.5;  // the other end must also move
       side = -1;
     } else {
       right = next;
@@ -186,20 +186,20 @@ void narrow(const Eliminated& reduced, const Scale& scale, search::Interval inte
   reduced.offer(reduced.full({scale.at(best)}), result);
 }
 
-/// The ends, which the narrowing never touches.
+/// The ends, which the narrowing never evaluates.
 void offer_ends(const Eliminated& reduced, const Scale& scale, SeparableResult& result) {
   for (const double share : {0.0, 1.0}) reduced.offer(reduced.full({scale.at(share)}), result);
 }
 
-/// A scan, then narrowing about its best.
+/// A scan, then narrowing about its best point.
 void search_line(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
                  SeparableResult& result) {
   narrow(reduced, scale, lowest(scan(reduced, scale, result)), pool, result);
   offer_ends(reduced, scale, result);
 }
 
-/// The valley about the best so far. Widens until its floor is inside, or at the domain's end: the
-/// start may lie on a slope.
+/// The valley about the best point so far. Widens until its minimum is inside, or at the domain's
+/// end, because the start may lie on a slope.
 void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool,
                  SeparableResult& result) {
   for (double reach = 1.0 / kScan;; reach *= 4.0) {
@@ -215,7 +215,7 @@ void search_near(const Eliminated& reduced, const Scale& scale, base::Pool& pool
   }
 }
 
-/// What elimination comes near to only.
+/// Refines a result that elimination only approximates.
 void polish_best(const PenaltyFunction& penalty, const search::Domain& domain, base::Pool& pool,
                  const Eliminated& reduced, SeparableResult& result) {
   const auto residuals = [&](const Eigen::VectorXd& theta, Eigen::VectorXd& residual,
@@ -231,7 +231,7 @@ void search_grid(const Eliminated& reduced, const std::vector<Scale>& scales,
   std::vector<std::vector<double>> points{{}};
   for (std::size_t s = 0; s < scales.size(); ++s) {
     const auto& scale = scales[s];
-    // Where the balance is not linear the polish goes further than from point to point.
+    // If the balance is not linear, the polish improves more than a step between points.
     const auto& shape = find_shape(penalty.names()[static_cast<std::size_t>(reduced.free()[s])]);
     const int steps = penalty.is_linear() || shape.speed_power != 0.0 ? kGrid : kFew;
     std::vector<std::vector<double>> wider;
@@ -276,7 +276,7 @@ std::vector<Scale> scales_of(const PenaltyFunction& penalty, const search::Domai
                              const Eliminated& reduced) {
   std::vector<Scale> scales;
   for (const auto i : reduced.free()) {
-    // A shape like speed^-2 is searched in its square root, which is like a speed.
+    // A shape like speed^-2 is searched in its square root, which behaves like a speed.
     const auto& shape = find_shape(penalty.names()[static_cast<std::size_t>(i)]);
     const bool root = shape.speed_power == -2.0;
     scales.emplace_back(domain.lower[i], domain.upper[i], root);

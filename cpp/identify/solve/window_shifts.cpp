@@ -16,12 +16,13 @@ namespace jointid::identify {
 
 namespace {
 
-constexpr double kSmallest = 1e-14;  // of a column's square: less is the products' rounding
-constexpr double kShare = 0.02;      // of a shift, which is a part of an error itself
+constexpr double kSmallest =
+    1e-14;  // of a column's square: a smaller value is rounding of the products
+constexpr double kShare = 0.02;  // of a shift, which is itself a part of an error
 constexpr std::int64_t kKeptSamples =
     1 << 20;  // samples up to which the parts are kept between steps
 
-/// Windows, and the first of those that belong together; at the end their number.
+/// Windows, and the first window of each group, followed by the number of windows.
 struct Nested {
   CutWindows halves;
   std::vector<std::size_t> pairs;  ///< halves of two neighbouring windows each
@@ -57,7 +58,7 @@ Nested nested(const Penalty& penalty, const Penalty::Masked& recordings) {
           places_of(recordings[number]->recording(), own, penalty.cut_durations()[number]);
       places.insert(places.end(), found.begin(), found.end());
     }
-    // The windows of twice the duration, as they would be cut: of two neighbours, or of one alone.
+    // The windows of twice the duration, from two neighbours or from one alone.
     if (places[w] % 2 != 0 && !begins && windows[w - 1].end == window.begin) {
       result.joined.windows.back().end = window.end;
     } else {
@@ -87,7 +88,7 @@ Eigen::MatrixXd joined(const Eigen::MatrixXd& rows, const std::size_t* first, st
   return result;
 }
 
-/// A triangle with these inner products; columns that others imply have nothing of their own.
+/// A triangle with these inner products. Columns that others imply have a zero diagonal.
 Eigen::MatrixXd root(Eigen::MatrixXd products) {
   const Eigen::Index size = products.cols();
   const Eigen::VectorXd square = products.diagonal();
@@ -103,7 +104,7 @@ Eigen::MatrixXd root(Eigen::MatrixXd products) {
   return result;
 }
 
-/// The halves in parts, and what both windowings make of their rows.
+/// The halves in parts, and the rows of both windowings.
 class Halves {
  public:
   Halves(const Nested& cut, PenaltyParts parts, Eigen::Index gain, base::Pool* pool)
@@ -116,7 +117,8 @@ class Halves {
 
   [[nodiscard]] const PenaltyParts& parts() const { return parts_; }
 
-  /// What the motion explains of the reading in each half, by the first stage of either windowing.
+  /// The part of the reading in each half that the motion explains, by the first stage of either
+  /// windowing.
   void project(const Instruments& instruments) {
     const Eigen::Index size = instruments.size();
     std::array<std::vector<Eigen::MatrixXd>, 2> products;
@@ -192,7 +194,7 @@ class Halves {
     return kept_.empty() ? work(parts_.part(part)) : work(*kept_[part]);
   }
 
-  /// Inner products of a part's rows, of their sums over pairs where those are asked for.
+  /// Inner products of a part's rows and, if requested, of their sums over pairs.
   [[nodiscard]] Eigen::MatrixXd of_windows(std::size_t part, const Eigen::MatrixXd& rows,
                                            bool pairs) const {
     if (!pairs) return base::symmetric_products(rows, rows);
@@ -207,7 +209,7 @@ class Halves {
     return base::symmetric_products(sums, sums);
   }
 
-  /// Puts what is explained of the reading in the place of the reading, or of what was there.
+  /// Replaces the reading, or an earlier projection, by the explained part of the reading.
   void replace_reading(std::size_t part, int stage, const Eigen::VectorXd& theta,
                        Eigen::MatrixXd& rows) const {
     if (explained_.empty()) return;
@@ -221,7 +223,7 @@ class Halves {
   Eigen::Index gain_;
   base::Pool* pool_;
   std::vector<std::unique_ptr<Penalty>> kept_;
-  std::vector<Eigen::MatrixXd> explained_;  ///< of each part, a column a windowing
+  std::vector<Eigen::MatrixXd> explained_;  ///< of each part, one column per windowing
 };
 
 Eigen::Index unknowns(const Penalty& penalty) {

@@ -1,5 +1,5 @@
 #pragma once
-// How far the minimum moves when each window is halved, and when neighbours are joined in pairs.
+// Shift of the minimum when each window is halved, and when neighbours are joined in pairs.
 
 #include <Eigen/Core>
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace jointid::identify {
 
-/// Minima over other windows; none where there are no such windows, or fewer than unknowns.
+/// Minima over other windows; none if there are no such windows, or fewer than unknowns.
 struct WindowShifts {
   std::optional<Eigen::VectorXd> halved;
   std::optional<Eigen::VectorXd> doubled;
 };
 
-/// The minima near that of a penalty, whose windows are neither cumulative nor loaded.
+/// The minima near that of a penalty. Its windows must be neither cumulative nor loaded.
 ///
 /// Both windowings nest: the halves' rows at `best` are summed to those of the joined windows, so
 /// friction is integrated once for both. `recordings`, `terms`, `gear_ratio` and `per_recording`
-/// are those that the penalty was made from.
+/// are those of the penalty.
 WindowShifts window_shifts(const Penalty& penalty, const Penalty::Masked& recordings,
                            const std::vector<std::string>& terms, double gear_ratio,
                            const std::vector<std::string>& per_recording,
