@@ -1,1 +1,1 @@
-"""A session on any drive: control loop, guard, recording, and the order in which it stops."""
+"""Session on any drive: control loop, guard, recording, and the order in which it stops."""

@@ -1,4 +1,4 @@
-"""A new file that is only appended to, and the thread that writes such files from memory to the disk."""
+"""New file to which blocks are only appended, and the thread that writes such files from memory to the disk."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _NEW = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_APPEND | getattr(os, "O_BINAR
 
 
 class AppendedFile:
-    """A new file; what is appended survives the end of this program, however it ends.
+    """New file. Appended blocks survive the end of this program, whatever the cause of the end.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ class AppendedFile:
     Raises
     ------
     OSError
-        It exists, or cannot be made.
+        The file exists, or cannot be created.
     """
 
     def __init__(self, path: Path) -> None:
@@ -28,7 +28,7 @@ class AppendedFile:
         self.descriptor = os.open(path, _NEW, 0o644)
 
     def append(self, block: bytes) -> None:
-        """Write a block, in one piece where the system takes it so.
+        """Write a block, in one piece if the system accepts it.
 
         Raises
         ------
@@ -38,7 +38,7 @@ class AppendedFile:
             block = block[os.write(self.descriptor, block) :]
 
     def sync(self) -> None:
-        """Return when everything is on the disk.
+        """Wait until everything is on the disk.
 
         Raises
         ------
@@ -52,13 +52,13 @@ class AppendedFile:
 
 
 class Syncing:
-    """Writes files to the disk repeatedly, in a thread: a slow disk does not delay the session.
+    """Thread that writes files to the disk repeatedly. A slow disk does not delay the session.
 
     Parameters
     ----------
     files : sequence of AppendedFile
     interval : float
-        Between two times [s].
+        Time between two writes [s].
     """
 
     def __init__(self, files: Sequence[AppendedFile], interval: float) -> None:
@@ -69,7 +69,7 @@ class Syncing:
         self._thread.start()
 
     def close(self) -> None:
-        """End the thread, which may still be writing."""
+        """Ask the thread to end. It may still be writing."""
         self._ending.set()
         self._thread.join()
 

@@ -1,4 +1,4 @@
-"""Controlled braking: torque against the motion before the motor goes off."""
+"""Controlled braking: torque against the motion before the motor is switched off."""
 
 from __future__ import annotations
 
@@ -17,17 +17,17 @@ BRAKED = frozenset(
         *("saturated_samples", "late_samples", "late_share", "user"),
     }
 )
-"""Stops behind which the joint is braked: its position is known, and the drive has done what it was told."""
+"""Stops after which the joint is braked: its position is known, and the drive has followed its commands."""
 
 _AT_REST = 0.02  # [rad/s]
-_LONGEST = 2.0  # times as long as it should take; beyond, only while the joint becomes slower
-_BOUND = 20.0  # times as long as it should take, in any case
+_LONGEST = 2.0  # multiple of the expected time; longer only while the joint slows down
+_BOUND = 20.0  # multiple of the expected time, in any case
 _SHORTEST = 0.05  # [s]
-_SLOWER = 0.05  # of the deceleration that it should have
-_MUCH_SLOWER = 0.2  # of the speed, within _SHORTEST
-_LOST = 5  # samples in a row, at least; the torque meanwhile is that of a joint that becomes slower
-_TRIED = 5  # cycles, after which the joint must be slower
-_CREDIBLE = 1.5  # of the velocity limit
+_SLOWER = 0.05  # share of the expected deceleration
+_MUCH_SLOWER = 0.2  # share of the speed, within _SHORTEST
+_LOST = 5  # samples in a row, at least; the torque then assumes that the joint slows down
+_TRIED = 5  # cycles; after them the joint must be slower
+_CREDIBLE = 1.5  # multiple of the velocity limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,11 +37,11 @@ class Braked:
     Attributes
     ----------
     velocity, left : float
-        Speed before and after [rad/s]; believed where no sample came.
+        Speed before and after braking [rad/s]; estimated if no sample arrived.
     time, travel : float
-        That it took [s], [rad]; the travel is that of the samples.
+        Duration [s] and distance [rad] of braking; the distance comes from the samples.
     samples : int
-        That came meanwhile; 0: it was braked by the last known velocity alone, and only for some cycles.
+        Number of samples during braking. 0: only the last known velocity was used, for a few cycles.
     """
 
     velocity: float
@@ -59,12 +59,12 @@ def brake_after(
     options: SessionOptions,
     follower: Follower | None,
 ) -> Braked | None:
-    """Brake behind a stop that allows it; None where it does not, or the joint's inertia is not known.
+    """Brake after a stop that allows it. Return None if it does not, or if the joint's inertia is not known.
 
     Raises
     ------
     DriveFaultError
-        The drive fails.
+        The drive failed.
     """
     sample = None if follower is None else follower.newest
     if joint is None or follower is None or sample is None:
@@ -88,35 +88,35 @@ def brake(
     period: float,
     timeout: float,
 ) -> Braked | None:
-    """Brake a joint until it hardly moves; the motor is still on behind this.
+    """Brake a joint until it hardly moves. The motor is still on afterwards.
 
-    The first torque follows from the last known velocity, at once. A joint heavier than believed is braked
-    on while it becomes slower. It ends early, at the last torque, when the joint does not become slower,
-    reverses, or cannot be seen.
+    The first torque follows at once from the last known velocity. If the joint is heavier than its file states, braking
+    goes on while the joint slows down. Braking ends early, at the last torque, if the joint does not slow down, if it
+    reverses, or if no samples arrive.
 
     Parameters
     ----------
     drive : Drive
     joint : MovingJoint
     limits : SessionLimits
-        Torque and velocity: a joint that seems much faster is not braked, because its encoder is not believed;
-        and how many samples may be lost in a row.
+        Torque, velocity and the number of samples that may be lost in a row. A joint that seems much faster than
+        the velocity limit is not braked, because its encoder is not trusted.
     sample : DriveSample
-        The last one.
+        Last sample.
     velocity : float
-        Known with it [rad/s].
+        Velocity at that sample [rad/s].
     period, timeout : float
-        Period of the cycles, and timeout of an answer [s].
+        Period of the cycles, and longest wait for an answer [s].
 
     Returns
     -------
     Braked or None
-        None: it cannot be told how to brake.
+        None if no safe braking torque is known.
 
     Raises
     ------
     DriveFaultError
-        The drive fails; nothing is left but to switch the motor off.
+        The drive failed; only switching the motor off remains.
     """
     braking = joint.braking(limits.torque)
     if braking is None:
@@ -126,17 +126,17 @@ def brake(
     begin, first, last = clock.now(), sample, sample
 
     def against(speed: float) -> float:
-        """The torque [N·m], softer at the end: within two cycles it would turn round."""
+        """Return the torque [N·m]; lower near rest, because the full torque would reverse the joint in two cycles."""
         return min(most, joint.inertia * speed / (2.0 * period))
 
     speed, direction = abs(velocity), 1.0 if velocity > 0.0 else -1.0
     if not speed <= _CREDIBLE * limits.velocity:
         speed = 0.0
-    # Also a zero: what held until now may have driven the joint, and a drive wants to hear its host.
+    # A torque of 0 is sent, too: the held torque may drive the joint, and the drive needs a sign of life.
     drive.command(-direction * against(speed))
     seen = lost = cycle = 0
-    most_lost = max(_LOST, 2 * limits.late_samples)  # more than a burst that ends a session
-    # Speeds: known at the beginning, seen since, and when `end` was set last.
+    most_lost = max(_LOST, 2 * limits.late_samples)  # longer than a burst that ends a session
+    # Speeds: known at the beginning, largest seen since, and when `end` was set last.
     begun, before, mark = speed, 0.0, 0.0
     marked, end = begin, begin + max(_SHORTEST, (most_lost + 2) * period)
     bound = end
@@ -158,7 +158,7 @@ def brake(
                 raise
             if lost > most_lost:
                 break
-            speed = max(0.0, speed - period * most / joint.inertia)  # it may be as slow by now
+            speed = max(0.0, speed - period * most / joint.inertia)  # it may already be this slow
             drive.command(-direction * against(speed))
             continue
         lost = 0

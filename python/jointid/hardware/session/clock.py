@@ -1,4 +1,4 @@
-"""Time of a session: the machine's monotonic clock, or an emulated bus's own."""
+"""Time of a session: the machine's monotonic clock, or the clock of an emulated bus."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ class Clock(Protocol):
     """Clock of a session."""
 
     def now(self) -> float:
-        """Time [s] from an arbitrary start; never goes back."""
+        """Return the time [s] since an arbitrary start. It never decreases."""
 
     def sleep_until(self, deadline: float) -> None:
         """Return at the deadline [s], or at once if it has passed."""
@@ -47,7 +47,7 @@ class MonotonicClock:
         self._spin, self._now, self._sleep = spin, now, sleep
 
     def now(self) -> float:
-        """Time [s]."""
+        """Return the time [s]."""
         return self._now()
 
     def sleep_until(self, deadline: float) -> None:

@@ -1,4 +1,4 @@
-"""The control loop of a session: in each cycle measure, check the limits, command."""
+"""Control loop of a session: in each cycle measure, check the limits, command."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from jointid.simulation.trajectory import Trajectory
 
 Observer = Callable[[str, float, DriveSample, float, float], object]
 UNCONFIRMED = 0.5
-"""What a command that was not confirmed adds to `Recording.late`; whole numbers are cycles without a sample."""
+"""Amount that an unconfirmed command adds to `Recording.late`. Whole numbers are cycles without a sample."""
 
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """A trajectory at each cycle.
+    """Trajectory, sampled at each cycle.
 
-    It is computed before the motor is on: for a long one that takes longer than a drive waits for our
+    It is computed before the motor is on. For a long trajectory this takes longer than a drive waits for the host's
     heartbeat.
 
     Attributes
@@ -56,13 +56,13 @@ class Follower:
     ----------
     drive : Drive
     law : ControlRun
-        A controller at work.
+        Running controller.
     guard : Guard
     options : SessionOptions
     interruptions : Interruptions
     observer : callable, optional
     feedback : bool
-        False: the trajectory is a torque, and there is no tracking error.
+        False if the trajectory is a torque; there is no tracking error then.
     """
 
     def __init__(
@@ -83,29 +83,27 @@ class Follower:
         self._estimate = VelocityEstimator(
             options.resolution, options.velocity_counts, options.velocity_time
         )
-        self._stamp = -math.inf  # of the last sample [s]
+        self._stamp = -math.inf  # time of the last sample [s]
         self.phase, self.began = "check", drive.clock.now()
         self.rows: list[tuple[float, ...]] = []
-        self.late: list[float] = []  # the cycles' ends, against the begins of the next [s]
-        self.woke: list[float] = []  # the cycles' begins, against when they were due [s]
-        self.cycles = self.cycles_before = 0  # in which a torque was commanded; before the run
+        self.late: list[float] = []  # end of each cycle relative to the start of the next [s]
+        self.woke: list[float] = []  # start of each cycle relative to its due time [s]
+        self.cycles = self.cycles_before = 0  # with a commanded torque; before the run
         self.newest: DriveSample | None = None
-        self.velocity = 0.0  # estimated with it [rad/s]
-        self.velocity_measured = False  # by the drive; the controller got it in some cycle
-        self._held = 0.0  # of the last command [N·m]: enabling commands zero
-        self._first: float | None = (
-            None  # how long after a cycle's begin the first sample was taken
-        )
+        self.velocity = 0.0  # estimate at the newest sample [rad/s]
+        self.velocity_measured = False  # whether the controller used the drive's velocity
+        self._held = 0.0  # last command [N·m]; enabling commands zero
+        self._first: float | None = None  # delay of the first sample after the start of its cycle
         self._missing = 0.0  # cycles without a sample before the next one
-        self._waited = False  # for a sample, in the last cycle
+        self._waited = False  # whether the last cycle waited for a sample in vain
 
     @property
     def lateness(self) -> Lateness:
-        """Counts the cycles without a sample."""
+        """Counter of the cycles without a sample."""
         return self._guard.lateness
 
     def enter(self, phase: str) -> None:
-        """Begin a phase: a stop names it and the time since."""
+        """Begin a phase. A stop reports the phase and the time since its begin."""
         self.phase, self.began = phase, self._drive.clock.now()
 
     def follow(
@@ -116,7 +114,7 @@ class Follower:
         offset: float = 0.0,
         settled: float | None = None,
     ) -> None:
-        """Follow a course; while the phase is "run", keep a row of each cycle.
+        """Follow a course. During the phase "run", keep a row of each cycle.
 
         Parameters
         ----------
@@ -125,13 +123,13 @@ class Follower:
         offset : float
             Added to the reference [rad].
         settled : float, optional
-            From this time on the phase is "settle" [s].
+            Time at which the phase "settle" begins [s].
 
         Raises
         ------
         LimitError, DriveFaultError
         Exception
-            An error of the controller or the observer.
+            An error in the controller or the observer.
         """
         options, clock, lateness = self._options, self._drive.clock, self._guard.lateness
         period = options.period
@@ -150,17 +148,17 @@ class Follower:
                 raise LimitError("user", self._interruptions.reason)
             woke = clock.now() - begin - k * period
             self.woke.append(woke)
-            # What is over is not caught up: the joint is asked for where it should be now.
+            # Skipped cycles are not repeated: the reference is always that of the current time.
             passed = int(woke / period)
             k += passed
             if k >= len(course.reference):
-                self._sample(timeout)  # a drive that has stopped meanwhile says why
+                self._sample(timeout)  # a drive that has stopped reports the reason here
                 lateness.skip(passed, woke)
                 break
             if settled is not None and self.phase == "move" and k * period > settled:
                 self.enter("settle")
             sample = self._sample(timeout)
-            if passed:  # behind the reading: a drive that has stopped meanwhile says why
+            if passed:  # after the reading: a drive that has stopped reports the reason there
                 lateness.skip(passed, woke)
             self._missing += passed
             if isinstance(sample, str):
@@ -169,7 +167,7 @@ class Follower:
                 self._waited = True
                 self._hold()
             else:
-                # Behind a late answer the bus is not quiet: when this sample was taken is known less well.
+                # After a late answer the bus is not quiet, so the time of this sample is less certain.
                 kept = running and not self._waited
                 self._waited = False
                 lateness.on_time()
@@ -189,7 +187,7 @@ class Follower:
         recorder: Recorder | None,
         kept: bool,
     ) -> None:
-        """Check a sample, command a torque, keep the row; a sample that ends the session is kept, too."""
+        """Check a sample, command a torque and keep the row. A sample that ends the session is kept, too."""
         guard, clock, period = self._guard, self._drive.clock, self._options.period
         self.newest = sample
         estimated = self._estimate(sample.time, sample.position)
@@ -197,11 +195,11 @@ class Follower:
         measures = not math.isnan(sample.velocity)
         speed = sample.velocity if measures else estimated
         self.velocity_measured = self.velocity_measured or measures
-        # The larger one for the limit: a velocity that a drive no longer updates must not disarm it.
+        # The limit uses the larger velocity, so that an outdated velocity of the drive cannot disable it.
         fastest = estimated if abs(estimated) > abs(speed) else speed
         late = sample.time - begin - due
         self._first = late if self._first is None else self._first
-        # To the nanosecond: rounding errors would turn the sign of a velocity of 0.
+        # Rounded to 1 ns: rounding errors would change the sign of a velocity of 0.
         shift = round(late - self._first, 9)
         elapsed = due + shift
         reference, velocity, acceleration = wanted
@@ -225,7 +223,7 @@ class Follower:
             if kept and math.isfinite(sample.position + sample.reading):
                 row = (elapsed, sample.position, held, sample.reading, target, sample.current)
                 self._keep((*row, self._missing), recorder)
-        # A command that was lost, or acts only in the next cycle, makes the next one's torque uncertain, too.
+        # After a lost command, or one that acts only in the next cycle, the next torque is uncertain, too.
         doubtful = acted > period or not sample.confirmed
         self._missing = (UNCONFIRMED if doubtful else 0.0) + (
             0.0 if kept else math.floor(self._missing) + 1.0
@@ -243,7 +241,7 @@ class Follower:
                 raise unwritten(recorder.failure)
 
     def _sample(self, timeout: float) -> DriveSample | str:
-        """Return the drive's state; if none has come in time, the reason."""
+        """Return the drive's state, or the reason if none arrived in time."""
         try:
             sample = self._drive.read(timeout)
         except DriveFaultError as error:
@@ -261,7 +259,7 @@ class Follower:
         self.cycles += 1
 
     def _check_stamp(self, stamp: float) -> None:
-        """See that a sample is younger than the one before it: else it is not of this cycle."""
+        """Check that a sample is newer than the previous one. Otherwise it does not belong to this cycle."""
         if not self._stamp < stamp < math.inf:
             raise DriveFaultError(
                 "stale_position",
@@ -272,7 +270,7 @@ class Follower:
         self._stamp = stamp
 
     def _accepted(self, torque: float) -> float:
-        """Command the drive; the torque that it accepted [N·m]."""
+        """Command the drive and return the torque that it accepted [N·m]."""
         accepted = self._drive.command(torque)
         if not isinstance(accepted, int | float):
             raise DriveFaultError(
@@ -284,7 +282,7 @@ class Follower:
     def _asked(
         self, time: float, sample: DriveSample, speed: float, wanted: tuple[float, float, float]
     ) -> float:
-        """Torque that the controller asks for [N·m]."""
+        """Return the torque that the controller requests [N·m]."""
         return self._law.step(
             time=time,
             position=sample.position,
@@ -297,7 +295,7 @@ class Follower:
 
 
 def unwritten(failure: Exception) -> Exception:
-    """Return a stop because the recording cannot be written; a bug in the writer as it is."""
+    """Return a stop because the recording cannot be written. Return a bug in the writer unchanged."""
     if not isinstance(failure, OSError):
         return failure
     return LimitError(

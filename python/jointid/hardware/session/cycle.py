@@ -1,4 +1,4 @@
-"""Torque and reference of a control cycle: numbers in a session, arrays in the replay of its frame log."""
+"""Torque and reference of a control cycle, for numbers (session) and arrays (replay of its frame log)."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ class LoggedCycle:
 
 
 def held_torque(before: Value, accepted: Value, acted: Value, period: float) -> Value:
-    """The mean over a cycle of the torque that the drive holds [N·m].
+    """Return the mean over a cycle of the torque that the drive holds [N·m].
 
     Parameters
     ----------
     before, accepted : float or ndarray
-        The last cycle's command and this one's [N·m].
+        Command of the previous cycle and of this cycle [N·m].
     acted : float or ndarray
-        From the sample until the drive acts on the command [s]; until then, the last one holds.
+        Time from the sample until the drive acts on the command [s]. Until then, the previous command holds.
     period : float
-        [s]
+        Period of the cycles [s].
     """
     if isinstance(acted, float):
         share = min(1.0, acted / period)
@@ -60,12 +60,12 @@ def held_torque(before: Value, accepted: Value, acted: Value, period: float) -> 
 
 
 def capped(shift: Value, period: float) -> Value:
-    """How far a cycle's reference is extrapolated [s]: at most a period, because what is later is skipped."""
+    """Return the time by which a reference is extrapolated [s]: at most one period, as later cycles are skipped."""
     if isinstance(shift, float):
         return max(-period, min(period, shift))
     return np.clip(shift, -period, period)
 
 
 def target_at(reference: Value, velocity: Value, acceleration: Value, shift: Value) -> Value:
-    """The reference of the instant at which a sample was taken, `shift` [s] after it was due."""
+    """Return the reference at the time of a sample, taken `shift` [s] after it was due."""
     return reference + shift * (velocity + 0.5 * shift * acceleration)

@@ -1,6 +1,6 @@
-"""What a session needs of a drive: an object with these methods; nothing is inherited.
+"""Interface between a session and a drive: an object with these methods. No base class is needed.
 
-`docs/hardware.md` shows a complete drive of sixty lines.
+`docs/hardware.md` shows a complete drive in sixty lines.
 """
 
 from __future__ import annotations
@@ -168,7 +168,7 @@ class Drive(Protocol):
         """
 
     def connect(self, period: float) -> None:
-        """Bring the drive up, motor off, in torque control.
+        """Connect the drive, with the motor off, in torque control.
 
         Called once, before every other call except `bus_load`. May take seconds.
 
@@ -262,16 +262,16 @@ _PROPERTIES = ("clock", "command_latency")
 
 
 def check_drive(drive: object) -> None:
-    """See that a drive has all that a session will call.
+    """Check that a drive has all methods and attributes that a session uses.
 
     Raises
     ------
     InputError
-        Names what is missing.
+        A method or attribute is missing; the message names it.
     """
     kind = type(drive)
     missing = [f"{name}()" for name in _METHODS if not callable(getattr(drive, name, None))]
-    # Looked up in the class first: a property of a drive that is not connected may refuse.
+    # The class is checked first, because a property of a drive that is not connected may raise.
     missing += [name for name in _PROPERTIES if not (hasattr(kind, name) or hasattr(drive, name))]
     if missing:
         raise InputError(

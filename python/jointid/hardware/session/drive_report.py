@@ -1,4 +1,4 @@
-"""What a drive is, how it is set and how it stands now: read from it, nothing is changed."""
+"""Identity, settings and state of a drive. They are only read; nothing is changed."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Reported:
         return _text(self.value, self.unit)
 
     def __str__(self) -> str:
-        """One line: name, meaning, value, and what is expected where that differs."""
+        """Return one line: name, meaning, value, and the expected value if it differs."""
         wanted = f"; expected: {_text(self.expected, self.unit)}" if self.differs else ""
         return f"{self.name} {self.meaning}: {self.text}{wanted}"
 
@@ -84,7 +84,7 @@ class DriveReport:
     current : float
         Active motor current [A].
     supply, temperature : float
-        Supply voltage [V] and temperature [°C]. An unknown number is NaN.
+        Supply voltage [V] and temperature [°C]. Unknown numbers are NaN.
     """
 
     drive: str

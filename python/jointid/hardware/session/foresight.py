@@ -1,4 +1,4 @@
-"""Limits that need to know the joint: where it would stop, whose energy moves it, what its motion needs."""
+"""Limits that need the joint's values: stopping position, source of energy, torque of the motion."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.stop import LimitError
 from jointid.simulation.trajectory import FloatArray
 
-# From the sample that shows the need until braking acts: the next cycle's command, and its way.
+# Time from the sample that requires braking until braking acts: the next cycle's command and its latency.
 _REACTION = 2.0  # periods
-_WATCHED = 0.02  # [s] over which work and energy are compared, and for which they must differ
-_NOTICED = 0.05  # [rad/s]: the energy of a slower motion is no evidence
-_DOUBT = 0.1  # of the link's weight
-_BEYOND = 0.05  # [s] that a torque may be beyond the envelope
-_SMALL = 0.05  # of the torque limit, which is added to the envelope
+_WATCHED = 0.02  # [s], span over which work and energy are compared
+_NOTICED = 0.05  # [rad/s]; the energy of a slower motion is no evidence
+_DOUBT = 0.1  # share of the link's weight
+_BEYOND = 0.05  # [s], allowed time of a torque beyond the envelope
+_SMALL = 0.05  # share of the torque limit, added to the envelope
 
 
 class Foresight:
@@ -30,10 +30,10 @@ class Foresight:
     ----------
     limits : SessionLimits
     period : float
-        [s]
+        Period of the cycles [s].
     joint : MovingJoint
     latency : float
-        Latency of a command, in drive and bus [s].
+        Latency of a command in the drive and on the bus [s].
     """
 
     def __init__(
@@ -44,21 +44,21 @@ class Foresight:
         self._braking = joint.braking(limits.torque)
         self._often = max(2, round(_WATCHED / period))
         self._watched: deque[tuple[float, float]] = deque(maxlen=self._often + 1)
-        self._work = 0.0  # of the motor since the beginning [J]
+        self._work = 0.0  # of the motor since the start [J]
         self._place: float | None = None
         self._against = self._beyond = 0
         self._longest = max(1, round(_BEYOND / period))
         self._seen: tuple[float, float] | None = None  # position and velocity of the last sample
 
     def moving(self, position: float, velocity: float, accepted: float) -> None:
-        """Check where the joint would stop if it were braked now.
+        """Check where the joint would stop if braking began now.
 
         Parameters
         ----------
         position, velocity : float
             [rad], [rad/s]
         accepted : float
-            The torque that holds until braking acts [N·m].
+            Torque that acts until braking begins [N·m].
 
         Raises
         ------
@@ -68,7 +68,7 @@ class Foresight:
         self._stops_inside(position, velocity, accepted)
 
     def whole(self, positions: FloatArray, velocities: FloatArray) -> None:
-        """Check a motion that the joint would follow exactly; where it cannot, it is only stopped the sooner.
+        """Check a motion that the joint follows exactly. Where it cannot follow, a session only stops earlier.
 
         Parameters
         ----------
@@ -87,19 +87,19 @@ class Foresight:
             self._stops_inside(float(positions[first]), float(velocities[first]), 0.0)
 
     def _way(self, speed: Any) -> Any:
-        """How far a joint goes that is braked, from a speed [rad/s] or several [rad]."""
+        """Return the stopping distance [rad] from one or several speeds [rad/s]."""
         assert self._braking is not None
         return speed * self._reaction + speed * speed / (2.0 * self._braking[1])
 
     def unseen(self, age: float, accepted: float) -> None:
-        """Check where the joint would stop, in a cycle without a sample.
+        """Check in a cycle without a sample where the joint would stop.
 
         Parameters
         ----------
         age : float
-            Since the last sample [s].
+            Time since the last sample [s].
         accepted : float
-            The torque that has held since, and holds until braking acts [N·m].
+            Torque that has acted since then, and acts until braking begins [N·m].
 
         Raises
         ------
@@ -109,7 +109,7 @@ class Foresight:
             return
         position, velocity = self._seen
         direction = 1.0 if velocity > 0.0 else -1.0
-        # Only what drives it on: where it has become slower, it has not been seen to.
+        # Only a torque in the direction of motion counts: a decrease of the speed is not confirmed by a sample.
         gained = direction * max(0.0, direction * accepted) / self._joint.inertia * age
         self._stops_inside(position + (velocity + 0.5 * gained) * age, velocity + gained, accepted)
 
@@ -132,14 +132,14 @@ class Foresight:
         )
 
     def driven(self, position: float, velocity: float, accepted: float) -> None:
-        """Check that the motor does not brake by its command while the joint gains energy.
+        """Check that the joint gains no energy while the commanded torque brakes it.
 
         Parameters
         ----------
         position, velocity : float
             [rad], [rad/s]
         accepted : float
-            The torque that has held since the sample before [N·m].
+            Torque that has acted since the previous sample [N·m].
 
         Raises
         ------
@@ -169,7 +169,7 @@ class Foresight:
     def commanded(
         self, torque: float, position: float, velocity: float, acceleration: float
     ) -> None:
-        """Check a command [N·m] against what the wanted motion needs at most.
+        """Check a command [N·m] against the largest torque that the reference needs.
 
         Raises
         ------
@@ -194,7 +194,7 @@ class Foresight:
 def foresight_of(
     joint: MovingJoint | None, drive: Drive, limits: SessionLimits, options: SessionOptions
 ) -> Foresight | None:
-    """Return the checks for a joint whose inertia is known; None for another."""
+    """Return the checks for a joint with known inertia; otherwise None."""
     if joint is None:
         return None
     return Foresight(limits, options.period, joint, drive.command_latency)

@@ -1,4 +1,4 @@
-"""Feedback gains that an inertia and a period bear: a loop that reacts within few periods swings up."""
+"""Largest feedback gains for an inertia and a period. A loop that reacts within a few periods becomes unstable."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from jointid import _core
 from jointid.hardware.session.moving_joint import MovingJoint
 from jointid.simulation.arguments import Controller
 
-_BANDWIDTH, _ROBUST = 0.25, 0.5  # times the period, at most; Table 6-1 has 0.16 and 0.45 at 2 ms
-_MOST = 1.2  # of the whole velocity feedback over the inertia, times the period; Table 6-1 has 0.77
+_BANDWIDTH, _ROBUST = 0.25, 0.5  # largest values, per period; Table 6-1 has 0.16 and 0.45 at 2 ms
+_MOST = 1.2  # largest velocity feedback over inertia, per period; Table 6-1 has 0.77
 _TABLE = _core.AdaptiveRobust()
 _WITH_DAMPING = (_core.Pd, _core.Pid, _core.CompensatedPid)
 
 
 def inertia_of(controller: Controller, joint: MovingJoint | None) -> float | None:
-    """Return the inertia that a controller's feedback moves, by its own estimate or the joint's [kg·m²]."""
+    """Return the inertia that a controller's feedback moves, from its own estimate or the joint's file [kg·m²]."""
     own = float(getattr(controller, "inertia", 0.0))
     if own > 0.0:
         return own
@@ -23,7 +23,7 @@ def inertia_of(controller: Controller, joint: MovingJoint | None) -> float | Non
 
 
 def fitting_gains(controller: Controller, inertia: float, period: float) -> dict[str, float]:
-    """Return the gains that fit, never above those of Table 6-1; empty without feedback.
+    """Return suitable gains, at most those of Table 6-1. Return an empty dict without feedback.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def fitting_gains(controller: Controller, inertia: float, period: float) -> dict
 def with_fitting_gains(
     controller: Controller, stated: Collection[str], joint: MovingJoint | None, period: float
 ) -> Controller:
-    """Return the controller with the gains that fit, where none of them is stated."""
+    """Return the controller with suitable gains if it states none of them."""
     inertia = inertia_of(controller, joint)
     gains = {} if inertia is None else fitting_gains(controller, inertia, period)
     if any(name in stated for name in gains):
@@ -57,7 +57,7 @@ def with_fitting_gains(
 
 
 def doubt_of_gains(controller: Controller, joint: MovingJoint | None, period: float) -> str:
-    """Say that gains times period is too large, and which gains fit; empty where it is not."""
+    """Return a warning that the gains are too large for the period, with suitable gains; empty if they are not."""
     inertia = inertia_of(controller, joint)
     if inertia is None or not (gains := fitting_gains(controller, inertia, period)):
         return ""
@@ -74,7 +74,7 @@ def doubt_of_gains(controller: Controller, joint: MovingJoint | None, period: fl
 
 
 def _velocity_feedback(controller: Controller) -> float:
-    """Torque of an error of velocity, besides what grows with the inertia [N·m·s/rad]."""
+    """Return the torque per velocity error, without the part that grows with the inertia [N·m·s/rad]."""
     if isinstance(controller, _core.AdaptiveRobust):
         return controller.robust_torque / controller.boundary if controller.robust_term else 0.0
     return controller.damping if isinstance(controller, _WITH_DAMPING) else 0.0

@@ -1,4 +1,4 @@
-"""Checks what a session measures and commands against its limits, cycle by cycle."""
+"""Checks of a session's measurements and commands against its limits, cycle by cycle."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from jointid.hardware.session.lateness import Lateness
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.stop import LimitError
 
-# Samples that the difference is the mean of: a drive is one or two cycles behind its command.
+# Number of samples in the mean difference, because a drive is one or two cycles behind its command.
 _COMPARED = 10
-# A drive may round a command, by an eighth when it keeps four bits of it; a smaller value was limited.
+# A drive with a mantissa of four bits rounds a command by up to an eighth. A smaller value was limited.
 _WHOLE = 0.875 - 1e-9
-_ROUNDING = 1e-6  # of a 32-bit float
-# Counts in a cycle: from such a speed no friction brings a joint to a stand within the next.
+_ROUNDING = 1e-6  # relative, of a 32-bit float
+# Encoder counts in a cycle. From this speed no friction stops a joint within the next cycle.
 _MOVING = 20
-# At a reversal the torque swings by twice the breakaway while the joint stands. It is believed to a factor of 2.
+# At a reversal the torque changes by twice the breakaway torque at rest. The stated value may be wrong by 2.
 _BELIEVED = 2.0
-# Of the torque limit: who stands still while it swings by more has no torque left to move it.
+# Multiple of the torque limit. A joint at rest during a larger change has no torque left to move it.
 _NEARLY_ALL = 1.98
 
 _WHY_CUT = (
@@ -38,26 +38,26 @@ _WHY_STANDING = (
 
 
 class Guard:
-    """Checks what a session measures and commands against its limits.
+    """Checks of a session's measurements and commands against its limits.
 
     Parameters
     ----------
     limits : SessionLimits
     period : float
-        [s]
+        Period of the cycles [s].
     resolution : float
         Output angle of an encoder count [rad].
     foresight : Foresight, optional
-        Checks that need to know the joint. Default: none.
+        Checks that need the joint's values. Default: none.
     breakaway : float, optional
-        Torque that the joint is believed to need before it moves [N·m]. Default: not known.
+        Expected breakaway torque of the joint [N·m]. Default: not known.
     doubt_of_gains : str
-        What speaks against the controller's gains at this period. Default: nothing.
+        Warning about the controller's gains at this period. Default: none.
 
     Attributes
     ----------
     lateness : Lateness
-        Counts the cycles without a sample.
+        Counter of the cycles without a sample.
     """
 
     def __init__(
@@ -78,8 +78,8 @@ class Guard:
         self._friction_known = breakaway is not None
         swing = min(2.0 * _BELIEVED * (breakaway or 0.0), _NEARLY_ALL * limits.torque)
         self._largest_swing = max(limits.torque, swing)
-        self._last = 0.0  # commanded by the controller; enabling commands zero
-        self._cut = 0  # commands that the drive accepted only in part
+        self._last = 0.0  # command of the controller; enabling commands zero
+        self._cut = 0  # number of commands that the drive accepted only in part
         self._accepted = 0.0  # torque accepted by the drive
         self._differences: deque[float] = deque((0.0,) * _COMPARED, maxlen=_COMPARED)
         self._difference = 0.0  # their sum
@@ -88,15 +88,15 @@ class Guard:
         self._speed_there = self._accepted_there = 0.0
 
     def measured(self, sample: DriveSample, velocity: float, error: float | None) -> None:
-        """Check what was measured.
+        """Check a sample.
 
         Parameters
         ----------
         sample : DriveSample
         velocity : float
-            The larger one of the estimated and the measured velocity [rad/s].
+            Estimated or measured velocity; the larger of the two [rad/s].
         error : float or None
-            Position less reference [rad]; None without feedback.
+            Position minus reference [rad]; None without feedback.
 
         Raises
         ------
@@ -124,7 +124,7 @@ class Guard:
             self._felt(sample.torque)
 
     def unseen(self, age: float) -> None:
-        """Check a cycle without a sample; the last one is some time ago [s].
+        """Check a cycle without a sample. `age` is the time since the last sample [s].
 
         Raises
         ------
@@ -139,15 +139,15 @@ class Guard:
         saturations: int,
         wanted: tuple[float, float, float] | None = None,
     ) -> None:
-        """Check the torque that the controller asks for [N·m], before it is commanded.
+        """Check the torque that the controller requests [N·m] before it is commanded.
 
         Parameters
         ----------
         torque : float
         saturations : int
-            Saturations of the controller in total.
+            Total number of saturations in the controller.
         wanted : tuple of float, optional
-            Position, velocity and acceleration of the reference. Default: there is none.
+            Position, velocity and acceleration of the reference. Default: no reference.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class Guard:
         limits = self._limits
         if not math.isfinite(torque):
             raise LimitError("torque", f"the controller asks for {torque}, which is not finite")
-        # A law clamps to the limit itself; rounding is no excess.
+        # The controller limits its torque itself; a rounding error is no violation.
         if abs(torque) > limits.torque * (1.0 + 1e-9):
             _hold("torque", torque, limits.torque, "N·m")
         rate = (torque - self._last) / self._period
@@ -175,7 +175,7 @@ class Guard:
             self._foresight.commanded(torque, *wanted)
 
     def accepted(self, asked: float, accepted: float) -> None:
-        """Check the torque accepted by the drive against the torque asked for [N·m]: it has limits of its own.
+        """Check the accepted torque against the requested torque [N·m], because the drive has its own limits.
 
         Raises
         ------
@@ -188,7 +188,7 @@ class Guard:
         self._accepted = accepted
 
     def timed(self, late: float) -> None:
-        """Check how late a cycle ended against the next one's begin [s]; negative: in time.
+        """Check the end of a cycle against the start of the next one. `late` [s] is negative if it was in time.
 
         Raises
         ------
@@ -204,7 +204,7 @@ class Guard:
             )
 
     def _read(self, sample: DriveSample) -> None:
-        """The torque sensor."""
+        """Check the torque sensor."""
         if not math.isfinite(sample.reading):
             raise LimitError(
                 "sensor", f"the torque sensor reads {sample.reading}, which is not finite"
@@ -219,7 +219,7 @@ class Guard:
             )
 
     def _repeats(self, position: float, velocity: float) -> None:
-        """An encoder that hangs: the same count in each cycle, though speed or torque contradict it."""
+        """Check for a frozen encoder: equal counts in each cycle although speed or torque contradict them."""
         if position != self._place:
             self._place, self._repeated = position, 0
             self._speed_there, self._accepted_there = velocity, self._accepted
@@ -246,7 +246,7 @@ class Guard:
         )
 
     def _felt(self, torque: float) -> None:
-        """The torque of the active current."""
+        """Check the torque of the active current."""
         if abs(torque) > self._largest_measured:
             _hold("measured_torque", torque, self._largest_measured, "N·m")
         difference = torque - self._accepted
@@ -264,7 +264,7 @@ class Guard:
 
 
 def _hold(limit: str, value: float, allowed: float, unit: str, why: str = "") -> None:
-    """Also a value that is not finite exceeds its limit."""
+    """Raise if a value exceeds its limit or is not finite."""
     if not abs(value) <= allowed:
         raise LimitError(
             limit,

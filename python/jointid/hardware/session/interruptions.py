@@ -1,4 +1,4 @@
-"""A request to stop, by Ctrl-C, SIGTERM or a closed terminal, obeyed between two cycles."""
+"""Request to stop by Ctrl-C, SIGTERM or a closed terminal. It takes effect between two cycles."""
 
 from __future__ import annotations
 
@@ -7,11 +7,11 @@ import threading
 from types import FrameType, TracebackType
 from typing import Any
 
-_PATIENCE = 3  # Ctrl-C so often: a drive that does not come back is left by an exception
+_PATIENCE = 3  # number of Ctrl-C after which an exception leaves a drive that does not answer
 
 
 class Interruptions:
-    """Catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a request to stop while it is entered, on the main thread.
+    """Context that catches SIGINT, SIGTERM, SIGHUP and SIGQUIT as a request to stop, on the main thread.
 
     On other threads Python delivers no signals, and nothing is caught.
     """
@@ -28,7 +28,7 @@ class Interruptions:
                 "SIGTERM",
                 "SIGHUP",
                 "SIGQUIT",
-            ):  # the last two are not everywhere
+            ):  # the last two do not exist on every platform
                 number = getattr(signal, name, None)
                 if number is not None:
                     self._before[number] = signal.signal(number, self._caught)
@@ -41,7 +41,7 @@ class Interruptions:
         trace: TracebackType | None,
     ) -> None:
         for number, before in self._before.items():
-            # None: it was installed by something that is not Python, and cannot be restored.
+            # None: the handler was not installed by Python and cannot be restored.
             signal.signal(number, signal.SIG_DFL if before is None else before)
 
     def _caught(self, number: int, frame: FrameType | None) -> None:

@@ -1,4 +1,4 @@
-"""Samples that are late or lost, and cycles that are skipped: how many a session stands."""
+"""Late or lost samples and skipped cycles: the number that a session tolerates."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ LOOKED_BACK = 5.0
 
 
 class Lateness:
-    """Counts cycles without a sample of their own, in a row and over the last 5 s.
+    """Counter of cycles without their own sample, in a row and over the last 5 s.
 
     Parameters
     ----------
     limits : SessionLimits
     period : float
-        [s]
+        Period of the cycles [s].
     """
 
     def __init__(self, limits: SessionLimits, period: float) -> None:
         self._limits = limits
         self._span = max(1, round(LOOKED_BACK / period))  # cycles
-        # At a long period a share is less than one sample: what may be lost in a row is no excess.
+        # At a long period the share is less than one sample. The number allowed in a row is always allowed.
         self._most = max(limits.late_samples, limits.late_share * self._span)
         self._recent: deque[int] = deque()  # numbers of the late cycles of the last 5 s
         self._cycle = 0
         self.in_row = self.most_in_row = 0
-        self.lost = self.skipped = 0  # in all
+        self.lost = self.skipped = 0  # in total
 
     def on_time(self) -> None:
-        """A cycle had its sample."""
+        """Count a cycle with its sample."""
         self._cycle += 1
         self.in_row = 0
 
     def late(self, why: str) -> None:
-        """A cycle got no sample in time.
+        """Count a cycle without a sample in time.
 
         Raises
         ------
@@ -47,7 +47,7 @@ class Lateness:
         self._count(why)
 
     def skip(self, cycles: int, late: float) -> None:
-        """Cycles were skipped, because the loop was late by some time [s].
+        """Count cycles that were skipped because the loop was late by `late` [s].
 
         Raises
         ------

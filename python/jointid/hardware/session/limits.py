@@ -12,11 +12,11 @@ from jointid.joint.joint import Joint
 from jointid.simulation.peaks import Peaks
 from jointid.simulation.plant import torque_limit
 
-_MEASURED_TORQUE, _TORQUE_DIFFERENCE = 1.2, 0.25  # of the commanded limit
-_WATCHDOG_SHARE, _LEAST_SHARE = 0.1, math.radians(2.0)  # of the window; at least
+_MEASURED_TORQUE, _TORQUE_DIFFERENCE = 1.2, 0.25  # share of the commanded limit
+_WATCHDOG_SHARE, _LEAST_SHARE = 0.1, math.radians(2.0)  # share of the range; its minimum
 _WITHOUT_WINDOW = math.radians(10.0)
 _NO_WINDOW = (-math.pi, math.pi)
-_ROUNDED = 1e-9  # a torque that is cut at the limit may be so much above it
+_ROUNDED = 1e-9  # relative; a torque that was cut at the limit may exceed it by rounding
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,29 +38,29 @@ class SessionLimits:
     measured_torque : float, optional
         Largest torque of the active current, if the drive reports it [N·m]. Default: 1.2 times `torque`.
     torque_difference : float, optional
-        Largest difference between commanded and measured torque, in the mean over ten samples [N·m].
+        Largest difference between commanded and measured torque, averaged over ten samples [N·m].
         Default: a quarter of `torque`.
     saturated_samples : int
-        Cycles, in all, in which the torque limit cut the command.
+        Total number of cycles in which the torque limit cut the command.
     missed_deadlines : int
-        Cycles in a row that ended after the next one had to begin.
+        Number of cycles in a row that ended after the start of the next one.
     repeated_positions : int
-        Equal encoder counts in a row although the joint just moved, or the torque changed by more than
-        `torque` and four times the joint file's breakaway torque (at most 1.98 times `torque`): an encoder that
-        hangs, or a blocked joint.
+        Equal encoder counts in a row although the joint just moved, or although the torque changed. They show a
+        frozen encoder or a blocked joint. The change must exceed both `torque` and four times the joint file's
+        breakaway torque; the limit is at most 1.98 times `torque`.
     clipped_samples : int
-        Torque readings in a row at the end of the sensor's range.
+        Number of torque readings in a row at the end of the sensor's range.
     late_samples : int
-        Cycles in a row without a sample in time. The last torque is held meanwhile, and the recording marks
+        Number of cycles in a row without a sample in time. The last torque is held, and the recording marks
         them (`Recording.late`).
     late_share : float
         Share of such cycles in the last 5 s; up to `late_samples` of them are always allowed.
     torque_envelope : float, optional
-        Largest command for longer than 50 ms, as a multiple of the torque that the reference needs by the
-        joint's friction, inertia and weight; a twentieth of `torque` is added. Default: off; `commission` uses 2
-        for runs with an identified joint.
+        Largest command for longer than 50 ms, as a multiple of the torque that the reference needs for the joint's
+        friction, inertia and weight. A twentieth of `torque` is added. Default: off; `commission` uses 2 for runs with
+        an identified joint.
     watchdog_travel : float, optional
-        Largest travel after the program's death, until the joint stands [rad]. Default: the coasting of a
+        Largest travel after the program dies, until the joint is at rest [rad]. Default: the coasting of a
         motor that goes off at once, plus `watchdog_share`.
 
     Raises
@@ -127,7 +127,7 @@ class SessionLimits:
         return max(_WATCHDOG_SHARE * (high - low), _LEAST_SHARE)
 
     def passed_by(self, peaks: Peaks) -> str:
-        """Return which of position, velocity and torque a motion exceeds; empty if none.
+        """Return a text on which of position, velocity and torque a motion exceeds; empty if none.
 
         Parameters
         ----------
@@ -152,7 +152,7 @@ class SessionLimits:
 
     @classmethod
     def of(cls, joint: Joint, **changes: float | tuple[float, float] | None) -> SessionLimits:
-        """Return a joint's limits with some changes; the torque limit is the smaller of torque and current."""
+        """Return a joint's limits with some changes. The torque limit is the smaller of those of torque and current."""
         known = joint.limits
         values: dict[str, object] = {}
         if known.position is not None:

@@ -1,4 +1,4 @@
-"""Metadata of a session's recording: everything that is needed to repeat the session."""
+"""Metadata of a session's recording: all values that are needed to repeat the session."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from jointid.simulation.arguments import Controller
 from jointid.simulation.designed_for import DesignedFor
 from jointid.simulation.trajectory import Trajectory
 
-_LONGEST = 100  # numbers of an argument; a trajectory of samples is in the reference anyway
+_LONGEST = 100  # longest list of numbers that is kept; the samples of a trajectory are in the reference anyway
 
 
 def session_metadata(
@@ -32,9 +32,9 @@ def session_metadata(
     limits: SessionLimits,
     options: SessionOptions,
 ) -> dict[str, Any]:
-    """Return what is known before a session begins, of JSON's types; the same whenever it is repeated.
+    """Return the metadata that is known before a session begins, in JSON types. It is the same when it is repeated.
 
-    A drive may have a `joint`, and a method `metadata`, which gives the name of its type and its options.
+    A drive may have a `joint`, and a method `metadata` that returns the name of its type and its options.
     """
     joint, described = getattr(drive, "joint", None), getattr(drive, "metadata", None)
     values = {
@@ -68,7 +68,7 @@ def motion_metadata(
     controller: Controller,
     period: float,
 ) -> dict[str, Any]:
-    """Return the key `motion_warning` where the motion was designed for something else."""
+    """Return the key `motion_warning` if the motion was designed for other conditions."""
     if designed_for is None:
         return {}
     moved = joint if isinstance(joint, Joint) else None
@@ -77,7 +77,7 @@ def motion_metadata(
 
 
 def plain(value: Any) -> Any:
-    """Return a value as JSON's types: a dataclass as a mapping, what is not finite as None."""
+    """Return a value in JSON types: a dataclass as a mapping, a number that is not finite as None."""
     if is_dataclass(value) and not isinstance(value, type):
         return {item.name: plain(getattr(value, item.name)) for item in fields(value)}
     if isinstance(value, Mapping):
@@ -90,7 +90,7 @@ def plain(value: Any) -> Any:
 
 
 def _gains(controller: object) -> dict[str, Any]:
-    """Of the core's controllers; a controller of another kind may have none."""
+    """Return the gains of one of the core's controllers; a controller of another type may have none."""
     gains = getattr(controller, "asdict", None)
     return {"gains": plain(gains())} if callable(gains) else {}
 

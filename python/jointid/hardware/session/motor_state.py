@@ -1,4 +1,4 @@
-"""State of a motor as its drive tells it: off, or what the drive does with it."""
+"""State of a motor as its drive reports it: off, or the drive's action on it."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ MotorState = Literal["off", "damped", "held", "braked", "on"]
 
 
 def state_of(state: MotorState | None, motor_off: bool | None) -> MotorState | None:
-    """Return a state, or the one that the older flag `motor_off` stands for.
+    """Return a state, or the state that the older flag `motor_off` means.
 
     Raises
     ------
     InputError
-        There is no such state.
+        The state does not exist.
     """
     if state is None:
         return None if motor_off is None else "off" if motor_off else "on"
@@ -24,5 +24,5 @@ def state_of(state: MotorState | None, motor_off: bool | None) -> MotorState | N
 
 
 def is_off(state: MotorState | None) -> bool | None:
-    """Whether a motor is off; None where its state is not known."""
+    """Return whether a motor is off; None if its state is not known."""
     return None if state is None else state == "off"

@@ -1,4 +1,4 @@
-"""What a joint's file says about its motion: inertia, gravity, friction; for limits that look ahead."""
+"""Inertia, gravity and friction from a joint's file, for limits that predict the motion."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid import _core
 from jointid.joint.joint import Joint
 
 _BRAKES = 0.9
-"""Share of the torque limit that braking may count on: a drive rounds a command down."""
+"""Usable share of the torque limit for braking, because a drive may round a command down."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -21,14 +21,14 @@ class MovingJoint:
     Attributes
     ----------
     inertia : float
-        That the drive's torque accelerates, with the link's [kg·m²].
+        Inertia that the drive's torque accelerates, including the link [kg·m²].
     weight, angle : float
-        Largest torque of gravity on the link [N·m], and the centre of mass's angle above the horizontal
-        at position 0 [rad].
+        Largest torque of gravity on the link [N·m], and angle of the center of mass above the horizontal at
+        position 0 [rad].
     dry : float or None
-        Largest friction just off rest [N·m]; None: not known.
+        Largest friction just above zero velocity [N·m]; None if not known.
     growing : tuple of (str, float)
-        Keys of the terms without shapes that vanish at rest, as viscous friction, and their largest coefficients.
+        Keys and largest coefficients of terms without shape that are 0 at rest, such as viscous friction.
     """
 
     inertia: float
@@ -39,7 +39,7 @@ class MovingJoint:
 
     @classmethod
     def of(cls, joint: object) -> MovingJoint | None:
-        """Return what a joint states; None when there is none, or its inertia is not known."""
+        """Return the values of a joint; None if there is none, or if its inertia is not known."""
         if not isinstance(joint, Joint):
             return None
         values = _values(joint)
@@ -63,9 +63,9 @@ class MovingJoint:
         )
 
     def braking(self, torque: float) -> tuple[float, float] | None:
-        """Return the torque for braking [N·m] and the deceleration that it surely gives [rad/s²].
+        """Return the torque for braking [N·m] and the smallest deceleration that it causes [rad/s²].
 
-        None: it cannot be told, or gravity may be stronger.
+        None if the friction is not known, or if gravity may be stronger.
 
         Parameters
         ----------
@@ -79,12 +79,12 @@ class MovingJoint:
         return (used, surely) if surely > 0.0 else None
 
     def energy(self, position: float, velocity: float) -> float:
-        """Kinetic energy, and potential energy of the link's weight [J]."""
+        """Return the kinetic energy plus the potential energy of the link's weight [J]."""
         height = self.weight * math.sin(position + self.angle)
         return 0.5 * self.inertia * velocity * velocity + height
 
     def needed(self, position: float, velocity: float, acceleration: float) -> float | None:
-        """Magnitude of the torque that a motion needs at most [N·m]; None where friction is not known."""
+        """Return the largest magnitude of the torque that a motion needs [N·m]; None if the friction is not known."""
         if self.dry is None:
             return None
         gravity = abs(self.weight * math.cos(position + self.angle))
@@ -95,7 +95,7 @@ class MovingJoint:
 
 
 def breakaway(joint: object) -> float | None:
-    """Return the largest friction in slow motion that a joint states [N·m]; None: its constant part is not known."""
+    """Return the largest friction in slow motion that a joint states [N·m]; None if its constant part is not known."""
     if not isinstance(joint, Joint):
         return None
     sizes = _sizes(_values(joint))
@@ -105,7 +105,7 @@ def breakaway(joint: object) -> float | None:
 
 
 def _values(joint: Joint) -> dict[str, float]:
-    """Those parameters whose value is known."""
+    """Return the parameters with a known value."""
     return {
         name: parameter.value
         for name, parameter in joint.parameters.items()
@@ -114,7 +114,7 @@ def _values(joint: Joint) -> dict[str, float]:
 
 
 def _sizes(values: dict[str, float]) -> list[tuple[_core.Term, float]]:
-    """Friction terms with a known value, each with the larger one of its directions; one term of each name."""
+    """Return the friction terms with a known value, the larger one of both directions; one term for each name."""
     rows = {
         t.name: t for t in reversed(_core.terms()) if t.friction and not (t.needs_load or t.side)
     }

@@ -1,4 +1,4 @@
-"""Options of a session: its period, its way to the start, its velocity estimator."""
+"""Options of a session: its period, its motion to the start, its velocity estimator."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from jointid.joint.checks import is_number
 
 _MOST_COUNTS = 1_000_000
 
-# Each cycle of a session is kept in memory until its end, in some 300 bytes: 1.5 GB for as many
-# cycles, which are 83 minutes at 1 kHz and almost three hours at the default period.
+# Each cycle of a session is kept in memory until its end, in some 300 bytes. This number of cycles needs 1.5 GB:
+# 83 minutes at 1 kHz, and almost three hours at the default period.
 MOST_CYCLES = 5_000_000
 SHORTEST_PERIOD = 1e-5  # s; no bus and no drive keeps a shorter one
-SLOWEST_APPROACH = 1e-4  # rad/s; a turn takes a day
+SLOWEST_APPROACH = 1e-4  # rad/s; a revolution takes almost a day
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,13 +31,13 @@ class SessionOptions:
     settle : float
         Time at rest at the start [s]; at most 5 million periods.
     velocity_counts : int
-        Encoder counts for a new velocity estimate (6.3.1).
+        Encoder counts until a new velocity estimate (thesis, 6.3.1).
     velocity_time : float
         Longest time between two velocity estimates [s].
     resolution : float, optional
         Output angle of an encoder count [rad]. Default: the drive's own `resolution`.
     answer_timeout : float, optional
-        Time to wait for the drive's state in a cycle [s]; after it the position is stale. Default: three
+        Longest wait for the drive's state in a cycle [s]; later the position is stale. Default: three
         quarters of a period.
     acknowledge_damped : bool
         Whether to start with a drive that damps, holds or brakes its motor, and does not switch it off, when the host
@@ -100,7 +100,7 @@ def check_cycles(name: str, time: float, period: float) -> None:
     Raises
     ------
     InputError
-        Names the longest time for this period.
+        The time is too long; the message names the longest time for this period.
     """
     if time > MOST_CYCLES * period:
         raise InputError(
@@ -112,12 +112,12 @@ def check_cycles(name: str, time: float, period: float) -> None:
 
 
 def with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
-    """Return options whose resolution is known: their own, or the drive's.
+    """Return options with a known resolution: their own, or the drive's.
 
     Raises
     ------
     InputError
-        Neither is known.
+        Neither resolution is known.
     """
     if options.resolution is not None:
         return options

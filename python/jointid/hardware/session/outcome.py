@@ -1,4 +1,4 @@
-"""Outcome of a session: why it stopped, how it ended, and what was recorded."""
+"""Outcome of a session: reason of the stop, state at the end, and recording."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ def stop_of(
     follower: Follower | None,
     end: DriveEnd | None,
 ) -> Stop:
-    """Return the stop that an exception means.
+    """Return the stop that an exception stands for.
 
     Parameters
     ----------
     cause : Exception or KeyboardInterrupt
     moment : float
-        On the drive's clock [s].
+        Time on the drive's clock [s].
     follower : Follower or None
-        Knows the phase; None: the session has not got beyond its checks.
+        Follower, which knows the phase; None if the session did not get beyond its checks.
     end : DriveEnd or None
-        What the drive reported when it was switched off.
+        Report of the drive when it was switched off.
     """
     limit, message = "error", f"{type(cause).__name__}: {cause}"
     if isinstance(cause, LimitError):
@@ -61,7 +61,7 @@ def stop_of(
 def ending_of(
     follower: Follower | None, end: DriveEnd | None, stop: Stop | None, not_granted: Sequence[str]
 ) -> dict[str, Any]:
-    """Return the metadata that is known at the end of a session, of JSON's types."""
+    """Return the metadata that is known at the end of a session, in JSON types."""
     late = np.array(() if follower is None else follower.late)
     timing = None
     if follower is not None and len(late):
@@ -92,7 +92,7 @@ def ending_of(
 def recording_of(
     follower: Follower | None, name: str, metadata: dict[str, Any]
 ) -> Recording | None:
-    """Return the recording of the run; None when there are too few samples for one."""
+    """Return the recording of the run; None if there are too few samples."""
     if follower is None or len(follower.rows) < _FEWEST:
         return None
     time, position, torque, sensor, reference, current, late = map(
@@ -102,10 +102,10 @@ def recording_of(
         time=time,
         position=position,
         torque=torque,
-        sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
+        sensor=sensor if sensor.any() else None,  # all 0: there is no sensor
         reference=reference,
         current=None if np.isnan(current).any() else current,
-        late=late if late.any() else None,  # 0 throughout: nothing was
+        late=late if late.any() else None,  # all 0: no sample was late
         torque_hold="zoh",
         name=name,
         metadata=metadata,
@@ -113,6 +113,6 @@ def recording_of(
 
 
 def _finite(value: Any) -> float | None:
-    """A number that a recording can keep; the message has one that is not finite."""
+    """Return a number that a recording can keep; None if it is not finite. The message contains it then."""
     number = math.nan if value is None else float(value)
     return number if math.isfinite(number) else None

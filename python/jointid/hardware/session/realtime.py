@@ -1,4 +1,4 @@
-"""Real-time settings of the operating system: asked for, and restored afterwards."""
+"""Real-time settings of the operating system: requested, and restored afterwards."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class RealTimeOptions:
     cpus : tuple of int, optional
         Processors that the loop may run on.
     timer_slack : float, optional
-        How much later a sleep may end [s]; Linux uses 50e-6 otherwise.
+        Largest delay of the end of a sleep [s]. Default: the system's, 50e-6 on Linux.
     freeze_garbage : bool
         Whether to stop garbage collection during the session.
     """
@@ -58,20 +58,20 @@ class RealTimeOptions:
 
 
 class RealTime:
-    """Asks for the options' settings and restores everything; a context manager for one thread.
+    """Context that requests the options' settings and restores everything afterwards, for one thread.
 
-    What is not granted is no error: the session runs, and `notes` lists what is missing. Threads
-    begun meanwhile do not inherit the priority; they do inherit `cpus`, so begin a writer before.
+    A setting that is not granted is no error: the session runs, and `notes` lists it. Threads that start in this
+    context do not inherit the priority. They do inherit `cpus`, so start a writer before.
 
     Parameters
     ----------
     options : RealTimeOptions, optional
-        Default: nothing is asked for.
+        Default: no settings.
 
     Attributes
     ----------
     notes : list of str
-        What was not granted, and why.
+        Settings that were not granted, and the reasons.
     """
 
     def __init__(self, options: RealTimeOptions | None = None) -> None:
@@ -120,7 +120,7 @@ class RealTime:
         def restore() -> None:
             try:
                 os.sched_setscheduler(0, policy, parameter)
-            except PermissionError:  # who may have the flag set may not have it cleared
+            except PermissionError:  # a process that may set the flag may still not clear it
                 os.sched_setscheduler(0, policy | os.SCHED_RESET_ON_FORK, parameter)
 
         self._undo.append(restore)
@@ -128,7 +128,7 @@ class RealTime:
     def _lock_memory(self) -> None:
         import resource  # not on every platform
 
-        # Under a limit, memory asked for later would be refused, and the session with it.
+        # With a limit, later requests for memory would be refused, and the session would fail.
         allowed = resource.getrlimit(resource.RLIMIT_MEMLOCK)[0]
         if allowed != resource.RLIM_INFINITY and not _may_lock():
             raise PermissionError(0, f"the limit is {allowed // 1024} kB")
@@ -184,7 +184,7 @@ def _status(name: str) -> str:
 
 
 def _locked_memory() -> int:
-    """Of this process [kB]."""
+    """Return the locked memory of this process [kB]."""
     return int(_status("VmLck"))
 
 

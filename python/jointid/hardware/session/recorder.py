@@ -1,4 +1,4 @@
-"""Samples and raw frames on disk as they arrive, written in a thread."""
+"""Writer of samples and raw frames: a thread puts them on the disk as they arrive."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ COLUMNS = (
     "current_A",
     "late_cycles",
 )
-_FLUSH = 0.02  # [s]: not much more is lost when the program is killed
-_SYNC = 0.25  # [s]: with what a slow disk takes, less than a second is lost with the power
+_FLUSH = 0.02  # [s]; about the time that is lost if the program is killed
+_SYNC = 0.25  # [s]; with the time of a slow disk, less than a second is lost at a power failure
 
-Frame = tuple[float, int, bytes, bool, bool, bool]  # and whether sent, of CAN FD, of 29 bits
+Frame = tuple[float, int, bytes, bool, bool, bool]  # last: whether sent, CAN FD, 29 bits
 
 
 def check_output(path: Path) -> None:
@@ -38,7 +38,7 @@ def check_output(path: Path) -> None:
     Raises
     ------
     InputError
-        They exist, or the folder does not, or the name does not end in .csv.
+        A file exists, the folder does not exist, or the name does not end in .csv.
     """
     if path.suffix != ".csv":
         raise InputError("a session writes .csv", argument="output", value=str(path))
@@ -54,9 +54,9 @@ def check_output(path: Path) -> None:
 
 
 class Recorder:
-    """Appends to a recording's file, and to a log of frames beside it (candump's format).
+    """Thread that appends to a recording's file, and to a log of frames next to it (candump's format).
 
-    The session's loop only puts things into a queue; this thread writes them.
+    The session's loop only puts items into a queue. This thread writes them.
 
     Parameters
     ----------
@@ -69,9 +69,9 @@ class Recorder:
     Raises
     ------
     InputError
-        The files exist, or the folder does not.
+        A file exists, or the folder does not exist.
     OSError
-        They cannot be written.
+        The files cannot be written.
     """
 
     def __init__(self, path: Path, metadata: Mapping[str, Any], name: str = "") -> None:
@@ -99,7 +99,7 @@ class Recorder:
         self._thread.start()
 
     def begin(self, notes: Mapping[str, Any]) -> None:
-        """Write above the first row what is known when the run begins; JSON."""
+        """Write the data that is known when the run begins above the first row; JSON."""
         self._queue.put(notes)
 
     def sample(self, row: Sequence[float]) -> None:
@@ -116,22 +116,22 @@ class Recorder:
         fd: bool = False,
         extended: bool = False,
     ) -> None:
-        """Keep a frame: what a drive's `tap` is given."""
+        """Keep a frame: the arguments of a drive's `tap`."""
         self._queue.put((when, identifier, payload, sent, fd, extended))
 
     def close(self, ending: Mapping[str, Any] | None = None) -> None:
-        """Write what is left; everything is on disk then.
+        """Write the rest. Afterwards everything is on the disk.
 
         Parameters
         ----------
         ending : mapping, optional
-            How the session ended; JSON. It is the last line of the same file, a comment: nothing that was
-            written is changed, and there is no second file to lose. Without it the file counts as truncated.
+            How the session ended; JSON. It becomes the last line of the same file, as a comment. Written lines do not
+            change, and no second file can get lost. Without it the file counts as truncated.
 
         Raises
         ------
         OSError
-            It could not be written.
+            The file could not be written.
         Exception
             A bug in the writing thread.
         """
@@ -144,7 +144,7 @@ class Recorder:
 
     @property
     def failure(self) -> Exception | None:
-        """What went wrong while writing, e.g. a full disk."""
+        """Error of the writing thread, e.g. a full disk; None without an error."""
         return self._failure if self._failure is not None else self._syncing.failure
 
     def _write(self) -> None:
@@ -158,18 +158,18 @@ class Recorder:
             self._syncing.close()
             for file in files:
                 file.sync()
-        except Exception as error:  # an OSError, or a bug: the session's loop raises it
+        except Exception as error:  # an OSError, or a bug; the session's loop raises it
             self._failure = error
         finally:
             self._syncing.close()
             for file in files:
                 try:
                     file.close()
-                except OSError as error:  # some network file systems say here what went wrong
+                except OSError as error:  # some network file systems report their errors here
                     self._failure = self._failure or error
 
     def _write_waiting(self) -> bool:
-        """Write what comes in a while; whether there will be more."""
+        """Write the items that arrive within a short time. Return whether more may follow."""
         rows, frames = [], []
         running, end = True, time.monotonic() + _FLUSH
         while running and (left := end - time.monotonic()) > 0.0:
@@ -185,15 +185,15 @@ class Recorder:
                 frames.append(_line(item))  # type: ignore[arg-type]
             else:
                 rows.append((",".join(map(repr, item)) + "\n").encode())
-        # Whole lines in one piece: a program that is killed leaves no line cut off. Frames first: the
-        # recording can be had from them.
+        # Whole lines are written in one piece, so that a killed program leaves no partial line. The frames come first,
+        # because the recording can be computed from them.
         self._frames.append(b"".join(frames))
         self._rows.append(b"".join(rows))
         return running
 
 
 def _created(path: Path, log: Path, header: bytes) -> tuple[AppendedFile, AppendedFile]:
-    """A session's two files, on the disk; neither of them when that fails."""
+    """Return a session's two files, created on the disk. If one fails, none is left."""
     made: list[AppendedFile] = []
     try:
         made.append(AppendedFile(path))
@@ -213,9 +213,9 @@ def _created(path: Path, log: Path, header: bytes) -> tuple[AppendedFile, Append
 
 
 def _line(frame: Frame) -> bytes:
-    """Return candump's line: 3 digits of an identifier or, of 29 bits, 8; ## and the flags of CAN FD."""
+    """Return a line of candump: identifier of 3 digits, or 8 for 29 bits; "##" and flags for CAN FD."""
     when, identifier, payload, sent, fd, extended = frame
     side = "T" if sent else "R"
     digits = f"{identifier:08X}" if extended else f"{identifier:03X}"
-    mark = "##1" if fd else "#"  # 1: the data have a bit rate of their own
+    mark = "##1" if fd else "#"  # 1: the data have their own bit rate
     return f"({when:.9f}) can0 {digits}{mark}{payload.hex().upper()} {side}\n".encode()

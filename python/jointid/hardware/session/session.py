@@ -1,4 +1,4 @@
-"""A session: a joint moved along a trajectory by a controller, through a drive, within limits."""
+"""Session: a controller moves a joint along a trajectory, through a drive, within limits."""
 
 from __future__ import annotations
 
@@ -195,7 +195,7 @@ class Session:
         cause: Exception | KeyboardInterrupt | None = None
         self._follower, self._end, self._bug, self.recording = None, None, None, None
         self._braked = None
-        early: list[tuple[Any, dict[str, Any]]] = []  # frames before there is a recorder
+        early: list[tuple[Any, dict[str, Any]]] = []  # frames before the recorder exists
         if self._output is not None and not dry_run:
             check_output(self._output)
             self._tap(lambda *frame, **kind: early.append((frame, kind)))
@@ -235,7 +235,7 @@ class Session:
                         stop = stop_of(cause, moment, self._follower, self._end)
         finally:
             if recorder is not None:
-                with suppress(Exception):  # another exception is on its way, or this one is known
+                with suppress(Exception):  # another exception follows, or this error is known
                     recorder.close()
         if cause is not None:
             self._note_bug(cause)
@@ -259,7 +259,7 @@ class Session:
         return self.recording
 
     def _recorder(self, output: Path) -> Recorder:
-        # The date is in the file only: what a session returns is bit-identical when it is repeated.
+        # The date is only in the file, so that a repeated session returns identical bits.
         started = datetime.now(UTC).isoformat(timespec="milliseconds")
         try:
             return Recorder(output, {**self._metadata(), "started": started}, output.stem)
@@ -273,7 +273,7 @@ class Session:
             reasons = self.check()
         except DriveFaultError as error:
             raise SessionRefusedError(f"not started: {error}") from error
-        except OSError as error:  # of the drive: nothing else is opened before
+        except OSError as error:  # from the drive; nothing else is open at this point
             raise SessionRefusedError(f"not started: {type(error).__name__}: {error}") from error
         if reasons:
             raise SessionRefusedError("not started: " + "; ".join(reasons))
@@ -281,7 +281,7 @@ class Session:
     def _guarded(
         self, recorder: Recorder | None, interruptions: Interruptions
     ) -> tuple[Exception | KeyboardInterrupt | None, float]:
-        """Enable, move, settle and run; return what ended it early, if anything, and when. The motor is off then."""
+        """Enable, move, settle and run. Return the cause and time of an early end, if any. The motor is off then."""
         options, limits = self._options, self._limits
         try:
             feedback = not isinstance(self._controller, _core.OpenLoop)
@@ -318,7 +318,7 @@ class Session:
         return None, moment
 
     def _approach(self, follower: Follower) -> None:
-        """Move to the start of the trajectory, smoothly, and stop there."""
+        """Move smoothly to the start of the trajectory and stop there."""
         options = self._options
         here = self._drive.read(10.0 * options.period).position
         distance = self._start() - here
@@ -327,24 +327,24 @@ class Session:
         follower.follow(course, None, offset=here, settled=approach_time(distance, options))
 
     def _start(self) -> float:
-        """Where the trajectory begins [rad]."""
+        """Return the first position of the trajectory [rad]."""
         return float(self._trajectory.sample(np.zeros(1))[0][0])
 
-    # Ways out.
+    # Endings.
 
     def _brake(self, cause: BaseException) -> None:
-        """Bring the joint to rest, where that is no risk; the motor goes off next in any case."""
+        """Brake the joint to rest if this is safe. The motor is switched off next in any case."""
         try:
             self._braked = brake_after(
                 cause, self._drive, self._moved, self._limits, self._options, self._follower
             )
         except (DriveFaultError, OSError, KeyboardInterrupt):
-            return  # the drive has failed, or somebody is in a hurry
+            return  # the drive has failed, or the user pressed Ctrl-C repeatedly
         except Exception as bug:
             self._note_bug(bug)
 
     def _switch_off(self) -> None:
-        """Torque to zero, motor off; an exception of the drive must not prevent the following steps."""
+        """Command zero torque and switch the motor off. An exception of the drive must not prevent the next steps."""
         try:
             self._end = self._drive.disable()
         except (Exception, KeyboardInterrupt) as error:
@@ -352,12 +352,12 @@ class Session:
             self._end = DriveEnd(state="on", failure=f"{type(error).__name__}: {error}")
 
     def _leave(self) -> None:
-        """Motor off, drive left."""
+        """Switch the motor off and close the drive."""
         if self._end is None or not self._end.motor_off:
             self._switch_off()
         try:
             self._drive.close()
-        except Exception as error:  # why the session ended is not to be hidden by this
+        except Exception as error:  # it must not hide the reason of the session's end
             self._note_bug(error)
             end = self._end if self._end is not None else DriveEnd()
             self._end = replace(
@@ -366,7 +366,7 @@ class Session:
         self._tap(None)
 
     def _note_bug(self, error: BaseException) -> None:
-        """Keep the first bug, to be raised when all is off and closed."""
+        """Keep the first bug. It is raised after the motor is off and everything is closed."""
         if self._bug is None and isinstance(error, Exception) and is_bug(error):
             self._bug = error
 

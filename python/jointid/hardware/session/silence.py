@@ -1,4 +1,4 @@
-"""What a drive did when its host fell silent on purpose."""
+"""Reaction of a drive when its host is silent on purpose."""
 
 from __future__ import annotations
 

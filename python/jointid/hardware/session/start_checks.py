@@ -20,7 +20,7 @@ from jointid.simulation.trajectory import Trajectory
 
 _FEWEST = 8  # samples of a recording
 SHORTEST_APPROACH = 0.2  # s
-FULLEST_BUS = 0.8  # of its time; more leaves no room for an emergency or a repeated frame
+FULLEST_BUS = 0.8  # share of the bus time; the rest is for an emergency message or a repeated frame
 
 
 def problems_on_paper(
@@ -31,7 +31,7 @@ def problems_on_paper(
     options: SessionOptions,
     joint: MovingJoint | None,
 ) -> Iterator[str]:
-    """Problems that are known before the bus is used: its load, the trajectory."""
+    """Yield problems that are known before the bus is used: its load, the trajectory."""
     period = options.period
     load = drive.bus_load(period)
     if not load <= FULLEST_BUS:
@@ -68,12 +68,12 @@ def problems_on_paper(
 
 
 def problems_of_drive(drive: Drive, limits: SessionLimits) -> list[str]:
-    """Problems that a connected drive reports.
+    """Return the problems that a connected drive reports.
 
     Raises
     ------
     InputError
-        It returns no list.
+        The drive does not return a list.
     """
     problems: object = drive.problems(limits.torque)
     if not isinstance(problems, list):
@@ -84,18 +84,18 @@ def problems_of_drive(drive: Drive, limits: SessionLimits) -> list[str]:
 
 
 def check_approach(distance: float, options: SessionOptions) -> None:
-    """Check that the way to the start has no more cycles than a session can keep.
+    """Check that the motion to the start has no more cycles than a session can keep.
 
     Parameters
     ----------
     distance : float
-        To the start of the trajectory [rad].
+        Distance to the start of the trajectory [rad].
     options : SessionOptions
 
     Raises
     ------
     InputError
-        Names the lowest velocity that is possible.
+        The velocity is too low; the message names the lowest possible one.
     """
     longest = MOST_CYCLES * options.period
     if approach_time(distance, options) <= longest:
@@ -110,18 +110,18 @@ def check_approach(distance: float, options: SessionOptions) -> None:
 
 
 def approach_time(distance: float, options: SessionOptions) -> float:
-    """Return the time of the way to the start [s], over a distance [rad]."""
+    """Return the duration of the motion to the start [s], for a distance [rad]."""
     return max(SHORTEST_APPROACH, 0.5 * math.pi * abs(distance) / options.approach_velocity)
 
 
 def approach_to(distance: float, options: SessionOptions) -> Trajectory:
-    """Return the way to the start, and the rest there, over a distance [rad]."""
+    """Return the motion to the start and the rest there, for a distance [rad]."""
     rise = approach_time(distance, options)
     return Trajectory.sigmoid(distance, rise=rise, duration=rise + options.settle)
 
 
 def problems_at_rest(sample: DriveSample, limits: SessionLimits) -> Iterator[str]:
-    """Problems with the state of a drive that is up, its motor off."""
+    """Yield problems with the state of a connected drive with its motor off."""
     low, high = limits.position
     if not low <= sample.position <= high:
         yield (

@@ -1,4 +1,4 @@
-"""How a session ends early: which limit, when, by how much; and as what exception."""
+"""Early end of a session: its limit, time and excess, and the exceptions for it."""
 
 from __future__ import annotations
 
@@ -17,19 +17,19 @@ class Stop:
     Attributes
     ----------
     limit : str
-        Its name: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (the
-        drive's), "host_heartbeat_lost" (ours, as the drive reports), "bus", "recording" (it cannot be written or made),
-        "sensor" (a reading that is not finite), "user", "error" (another exception).
+        Name of the limit: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (of the
+        drive), "host_heartbeat_lost" (of the host, as the drive reports), "bus", "recording" (it cannot be written or
+        created), "sensor" (a reading that is not finite), "user", "error" (another exception).
     phase : str
         "check", "enable", "move", "settle" or "run".
     time : float
-        Since the phase began [s].
+        Time since the start of the phase [s].
     moment : float
-        On the drive's clock, which stamps the frames too [s].
+        Time on the drive's clock, which also stamps the frames [s].
     message : str
         What happened, with numbers.
     measured, allowed : float or None
-        The number that was beyond the limit, and the limit, in the limit's unit; None where there is none.
+        Value beyond the limit, and the limit, in the limit's unit; None without a number.
     motor_off : bool or None
         Whether the drive confirmed that its motor is off; None if it cannot be asked.
     """
@@ -93,16 +93,16 @@ class SessionStoppedError(RuntimeError):
 
 
 def is_bug(error: BaseException) -> bool:
-    """Return whether an exception means a bug in a program: none of a limit, a fault, bad input, the user.
+    """Return whether an exception means a bug in a program, and not a limit, a fault, bad input or the user.
 
-    An OSError is none: a device or a disk has failed.
+    An OSError is no bug: a device or a disk has failed.
     """
     expected = (LimitError, DriveFaultError, InputError, OSError, KeyboardInterrupt)
     return not isinstance(error, expected)
 
 
 def noted(error: Exception, note: str) -> Exception:
-    """Return the exception, with a note if there is one."""
+    """Return the exception, with the note if it is not empty."""
     if note:
         error.add_note(note)
     return error

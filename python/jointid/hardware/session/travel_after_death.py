@@ -1,4 +1,4 @@
-"""How far a joint goes when its host dies: its torque held until the drive's time-out, then none, simulated."""
+"""Travel of a joint after its host dies, simulated: the torque is held until the drive's time-out, then it is 0."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from jointid.joint.joint import Joint
 from jointid.simulation.plant import Values, simulated_joint
 from jointid.simulation.trajectory import FloatArray, Trajectory
 
-_MOMENTS = 20_000  # of a motion, of which only the worst are simulated
-_ALIKE = 0.01  # of the largest torque: moments that differ by less are one
-_PLACES = 4  # parts of its range, where torque depends on the angle: the worst of each
-_STEP = 2e-3  # [s] of the simulation, at most; a shorter hold has as many as 20 of its own
+_MOMENTS = 20_000  # number of moments of a motion; only the worst are simulated
+_ALIKE = 0.01  # share of the largest torque; moments that differ by less count as one
+_PLACES = 4  # parts of the range, if torque depends on the angle; the worst of each are kept
+_STEP = 2e-3  # [s], longest step of the simulation; a shorter hold has 20 steps
 _STEPS = 20
-_FIRST, _LONGEST = 0.25, 64.0  # [s] of coasting: at first, then twice as long until it stands
+_FIRST, _LONGEST = 0.25, 64.0  # [s], coasting: first and longest; doubled until rest
 _STANDS = 1e-3  # [rad/s]
 IndexArray = npt.NDArray[np.intp]
 _HELD = _core.Trajectory.step(distance=1.0, time=0.0, duration=1e9)
@@ -35,7 +35,7 @@ class Moments:
     Parameters
     ----------
     position, velocity, torque : ndarray
-        [rad], [rad/s]; that the drive holds from then on [N·m].
+        Position [rad] and velocity [rad/s]; torque that the drive holds from then on [N·m].
     """
 
     position: FloatArray
@@ -44,20 +44,20 @@ class Moments:
 
 
 class DeadHost:
-    """Simulates a joint after the death of its host.
+    """Simulation of a joint after the death of its host.
 
     Parameters
     ----------
     joint : Joint or None
-        What it states is believed. Where it states no friction, the torque of friction is taken to remain what
-        it is; where it states no inertia, the acceleration.
+        The stated values are used. Without a stated friction, the friction torque is assumed to stay constant.
+        Without a stated inertia, the acceleration is assumed to stay constant.
     largest_torque : float
-        To which commands are cut [N·m].
+        Limit of the commands [N·m].
 
     Attributes
     ----------
     coasts : bool
-        No friction is stated: nothing is known of the way after the time-out, and only the way until then counts.
+        Whether no friction is stated. The travel after the time-out is then unknown, and only the travel before counts.
     """
 
     def __init__(self, joint: Joint | None, largest_torque: float) -> None:
@@ -66,7 +66,7 @@ class DeadHost:
         self._turns = bool(self._joint.weights or self._joint.harmonics)
 
     def worst_moments(self, *motions: Moments) -> Moments:
-        """Return the moments of some motions from which others cannot go farther."""
+        """Return the moments of some motions with the longest possible travel."""
         position, velocity, torque = (
             np.concatenate([getattr(motion, name) for motion in motions])
             for name in ("position", "velocity", "torque")
@@ -75,9 +75,9 @@ class DeadHost:
         return Moments(position[kept], velocity[kept], torque[kept])
 
     def _worst(self, position: FloatArray, velocity: FloatArray, push: FloatArray) -> IndexArray:
-        """Where no other moment is as fast and is pushed as hard, to a hundredth, in either direction.
+        """Return the moments with no other moment as fast and with as much torque, to 1 %, in either direction.
 
-        From a larger velocity and under a larger torque a joint goes farther, whatever its friction.
+        A joint goes farther with a larger velocity and a larger torque, whatever its friction.
         """
         place = np.zeros(len(position))
         if self._turns and np.ptp(position) > 0.0:
@@ -94,7 +94,7 @@ class DeadHost:
         return np.unique(np.concatenate(kept))
 
     def moments(self, trajectory: Trajectory, period: float, *, offset: float = 0.0) -> Moments:
-        """Return the worst moments of a motion that is followed exactly, with the torque that the joint needs there.
+        """Return the worst moments of a motion that the joint follows exactly, with the torque that it needs there.
 
         Parameters
         ----------
@@ -106,7 +106,7 @@ class DeadHost:
         """
         apart = max(period, trajectory.duration / _MOMENTS)
         motion = trajectory.sample(np.arange(0.0, trajectory.duration, apart))
-        # Where friction falls with speed, one that is left out here may need a little more torque.
+        # If friction falls with speed, an omitted moment may need a little more torque.
         kept = self._worst(*motion)
         position, velocity, wanted = (each[kept] for each in motion)
         position = position + offset
@@ -118,7 +118,7 @@ class DeadHost:
     def commanded(
         self, trajectory: Trajectory, period: float, position: float, limits: SessionLimits
     ) -> Moments:
-        """Return the moments of a motion by torques, from rest at an angle [rad], until a limit ends it."""
+        """Return the moments of a motion under a torque trajectory, from rest at `position` [rad] until a limit."""
         steps = max(1, round(trajectory.duration / period))
         begin = Moments(np.full(1, position), np.zeros(1), np.ones(1))
         found = self._run(begin, steps, period, trajectory.core)
@@ -130,14 +130,14 @@ class DeadHost:
         return Moments(places[kept], speeds[kept], torques[kept])
 
     def travel(self, moments: Moments, time: float) -> float:
-        """Return the farthest that a joint goes from where it was when its host died [rad].
+        """Return the longest travel of a joint from its position at the death of its host [rad].
 
         Parameters
         ----------
         moments : Moments
         time : float
-            After which the drive cuts the torque [s]. What a drive does besides (damped, held, braked) only shortens
-            the way, by how much nobody declares.
+            Time until the drive cuts the torque [s]. A drive that also damps, holds or brakes only shortens the travel.
+            The amount is not declared.
         """
         start = moments.position[:, np.newaxis]
         farthest = 0.0
@@ -167,7 +167,7 @@ class DeadHost:
         step: float,
         torque: _core.Trajectory = _HELD,
     ) -> dict[str, FloatArray]:
-        """Signals of a joint from each moment on, a row each."""
+        """Return the signals of a joint from each moment on, one row for each moment."""
         scenario = _core.Scenario(
             duration=steps * step,
             control_period=step,
@@ -193,17 +193,17 @@ class DeadHost:
         ]
         outcomes = _core.simulate_runs(scenario, torque, setups, signals=True, threads=1)
         names = ("true_position", "true_velocity", "true_acceleration", "torque")
-        signals = [each.signals for each in outcomes]  # made anew whenever they are asked for
+        signals = [each.signals for each in outcomes]  # computed again at each access
         return {name: np.array([each[name] for each in signals]) for name in names}
 
 
 def _last(found: dict[str, FloatArray], before: Moments) -> Moments:
-    """The state in which each run ended."""
+    """Return the state at the end of each run."""
     return Moments(found["true_position"][:, -1], found["true_velocity"][:, -1], before.torque)
 
 
 def _believed(joint: Joint | None) -> tuple[_core.SimulatedJoint, bool]:
-    """What is simulated of a joint, and whether its friction is left out because it is not stated."""
+    """Return the joint to simulate, and whether its friction is left out because it is not stated."""
     moving = MovingJoint.of(joint)
     if joint is not None and moving is not None:
         known = {name for name, each in joint.parameters.items() if each.value is not None}
@@ -222,7 +222,7 @@ def _believed(joint: Joint | None) -> tuple[_core.SimulatedJoint, bool]:
 
 
 def _both(known: set[str], name: str, orders: tuple[float, ...]) -> tuple[float, ...]:
-    """Those orders of which sine and cosine are stated."""
+    """Return the orders with a stated sine and cosine."""
     return tuple(
         order for order in orders if {f"{name}_sin_{order:g}", f"{name}_cos_{order:g}"} <= known
     )

@@ -1,4 +1,4 @@
-"""Velocity on line, from positions that come in counts."""
+"""Velocity estimate during a session, from positions in encoder counts."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ from collections import deque
 
 
 class VelocityEstimator:
-    """The difference over the time in which at least some counts came in (thesis 6.3.1).
+    """Position difference over the time in which at least some counts arrived (thesis, 6.3.1).
 
     Parameters
     ----------
     resolution : float
-        A count [rad].
+        Angle of an encoder count [rad].
     counts : int
-        At least, for a new estimate. Default 5.
+        Smallest number of counts for a new estimate. Default 5.
     longest : float
-        After which an estimate is made from what there is [s]. Default 0.01.
+        Longest time without a new estimate [s]. Default 0.01.
     """
 
     def __init__(self, resolution: float, counts: int = 5, longest: float = 0.01) -> None:
@@ -24,7 +24,7 @@ class VelocityEstimator:
         self._past: deque[tuple[float, float]] = deque()
 
     def __call__(self, time: float, position: float) -> float:
-        """The velocity [rad/s] after one more position."""
+        """Return the velocity [rad/s] after one more position."""
         past = self._past
         past.append((time, position))
         while len(past) > 2 and (

@@ -1,4 +1,4 @@
-"""The watchdog of a drive: how long it waits for its host, for what, and what it does then."""
+"""Watchdog of a drive: its time, the host's sign of life, and the drive's reaction."""
 
 from __future__ import annotations
 
@@ -67,12 +67,12 @@ class Watchdog:
 
 
 def watchdog_of(drive: object) -> Watchdog | None:
-    """Return what a drive declares as its attribute `watchdog`; None where it declares nothing.
+    """Return the value of a drive's attribute `watchdog`; None without it.
 
     Raises
     ------
     InputError
-        It is no Watchdog.
+        The attribute is not a Watchdog.
     """
     found = getattr(drive, "watchdog", None)
     if found is not None:

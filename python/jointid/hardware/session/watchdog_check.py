@@ -1,4 +1,4 @@
-"""Whether a drive's watchdog is quick enough for a motion: the way of a joint after its host's death, judged."""
+"""Check that a drive's watchdog is quick enough for a motion, by the joint's travel after its host's death."""
 
 from __future__ import annotations
 
@@ -19,31 +19,31 @@ from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.trajectory import Trajectory
 
-_PERIODS = 2.5  # in the watchdog's time, at least: a command may come late, or be lost
-_ROUNDED = 1e-6  # of a millisecond
+_PERIODS = 2.5  # fewest periods in the watchdog's time, because a command may be late or lost
+_ROUNDED = 1e-6  # share of a millisecond
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class WatchdogTravel:
-    """How far a joint goes when its host dies in a motion, and how far it may.
+    """Travel of a joint when its host dies in a motion, and the allowed travel.
 
     Attributes
     ----------
     watchdog : Watchdog
     travel : float
-        The farthest, from the worst moment of the motion [rad].
+        Longest travel, from the worst moment of the motion [rad].
     at_once : float
-        The same, if the motor went off at once [rad].
+        The same for a motor that goes off at once [rad].
     allowed : float
-        [rad]
+        Allowed travel [rad].
     stated : bool
-        The allowance is the joint file's; else it is `at_once` and a share of the window.
+        Whether `allowed` is from the joint file. Otherwise it is `at_once` plus a share of the position range.
     longest : float or None
-        Longest time that passes, in whole milliseconds [s]; None: `watchdog.time` passes, or no time does.
+        Longest watchdog time that passes, in whole milliseconds [s]; None if `watchdog.time` or no time passes.
     coasts : bool
-        The joint states no friction: `travel` ends with the watchdog's time, and then it coasts.
+        Whether the joint states no friction. `travel` then ends with the watchdog's time, and the joint coasts on.
     revolute : bool
-        Else [m].
+        Whether the unit is rad; otherwise it is m.
     """
 
     watchdog: Watchdog
@@ -57,7 +57,7 @@ class WatchdogTravel:
 
     @property
     def passed(self) -> bool:
-        """Whether the joint stays within its allowance."""
+        """Whether the joint stays within the allowed travel."""
         return self.travel <= self.allowed
 
     def to_dict(self) -> dict[str, Any]:
@@ -79,7 +79,7 @@ class WatchdogTravel:
         return f"{self.watchdog}; {self._way()}"
 
     def problem(self) -> str:
-        """Return why the watchdog is too slow, with the longest time that passes."""
+        """Return the reason why the watchdog is too slow, with the longest time that passes."""
         if self.longest is None:
             remedy = "no time passes; move more slowly, or state another"
         else:
@@ -125,11 +125,11 @@ def watchdog_travel(
     watchdog : Watchdog
         Watchdog of the drive.
     joint : Joint or None
-        What it states of inertia, friction and weight is believed.
+        Its stated inertia, friction and weight are used.
     controller, trajectory, limits, options
         As in the session.
     position : float
-        Where the joint stands before it [rad].
+        Position of the joint before the session [rad].
     """
     dead = DeadHost(joint, limits.torque)
     if isinstance(controller, _core.OpenLoop):
@@ -169,7 +169,7 @@ def watchdog_travel(
 
 
 def watchdog_problems(travel: WatchdogTravel, options: SessionOptions) -> Iterator[str]:
-    """Say why a session must not start with the watchdog that a drive declares.
+    """Yield the reasons why a session must not start with a drive's watchdog.
 
     Parameters
     ----------
@@ -206,7 +206,7 @@ def slow_watchdog(
     *,
     position: float,
 ) -> list[str]:
-    """Return why a session must not start with the watchdog that its drive declares, if it declares one."""
+    """Return the reasons why a session must not start with the watchdog of its drive; empty without one."""
     watchdog = watchdog_of(drive)
     if watchdog is None:
         return []
