@@ -1,4 +1,4 @@
-"""The loop closed on a bench: run a joint, identify it, run it again with the estimate."""
+"""Commissioning of a bench: run a joint, identify it, run it again with the estimate."""
 
 from jointid.commissioning.result import BenchRun, Commissioning
 from jointid.commissioning.ring import commission

@@ -25,7 +25,7 @@ class BenchRun:
         "initial", "cycle 1", …, "true parameters".
     recording : Recording
     controller : AdaptiveRobust, CompensatedPid or LugreObserver
-        The controller with the parameters that it assumed.
+        Controller with its assumed parameters.
     tracking_error, peak_error : float
         Root mean square and largest magnitude of position minus reference, without the first sixth of the run
         [rad].
@@ -45,15 +45,15 @@ class Commissioning(Result):
     Attributes
     ----------
     runs : tuple of BenchRun
-        The initial run, then one for each cycle that `agree` allowed and that has no blocking finding.
+        Initial run, then one run for each cycle that `agree` allowed and that has no blocking finding.
     estimates : tuple of Estimate
-        One for each cycle, from all recordings until then; empty when the joint was only recorded.
+        One estimate for each cycle, from all recordings until then; empty if the joint was only recorded.
     truth : mapping of str to float
         True parameters of an emulated joint; empty otherwise.
     true_run : BenchRun or None
         Run of an emulated joint with the true parameters.
     without_ripple : Estimate or None
-        The last estimate without the model's ripple; None if the model has none.
+        Last estimate, repeated without the model's ripple; None if the model has no ripple.
     """
 
     runs: tuple[BenchRun, ...]
@@ -89,12 +89,12 @@ class Commissioning(Result):
 
     @property
     def blocked(self) -> Finding | None:
-        """The blocking finding that kept the joint from moving with the last estimate; None without one."""
+        """Blocking finding of the last estimate, with which the joint did not move; None without one."""
         return None if not self.estimates else blocking(self.estimates[-1])
 
     @property
     def motion_warning(self) -> str:
-        """How the bench differs from the bench of the designed motion; empty if it does not."""
+        """Difference from the bench of the designed motion; empty without a difference."""
         return str(self.runs[0].recording.metadata.get("motion_warning", ""))
 
     @property
@@ -103,12 +103,12 @@ class Commissioning(Result):
         return self.runs[0].tracking_error / self.runs[-1].tracking_error
 
     def recordings(self) -> dict[str, Recording]:
-        """The runs' recordings by name, e.g. for `jointid.plot.tracking_error`."""
+        """Return the runs' recordings by name, e.g. for `jointid.plot.tracking_error`."""
         last = () if self.true_run is None else (self.true_run,)
         return {run.name: run.recording for run in (*self.runs, *last)}
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the numbers in JSON's types."""
+        """Return the numbers in JSON types."""
         estimates = [
             {name: found.value for name, found in estimate.parameters.items()}
             for estimate in self.estimates
@@ -144,18 +144,18 @@ class Commissioning(Result):
 
 
 def blocking(estimate: Estimate) -> Finding | None:
-    """The first finding that says that the values cannot be used."""
+    """Return the first finding by which the values cannot be used; None without one."""
     return next((each for each in estimate.findings if each.severity == "blocking"), None)
 
 
 def text_report(result: Commissioning, action: Callable[[Action], str] = str) -> str:
-    """Tables of tracking errors and parameters.
+    """Return tables of tracking errors and parameters.
 
     Parameters
     ----------
     result : Commissioning
     action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
+        Returns the text of a finding's advice. Default: as at a Python prompt.
     """
     lines = _runs(result)
     if result.estimates:
@@ -176,7 +176,7 @@ def text_report(result: Commissioning, action: Callable[[Action], str] = str) ->
 
 
 def run_rows(result: Commissioning) -> list[list[str]]:
-    """Tracking error of each run; the first row is the head."""
+    """Return the tracking error of each run. The first row is the header."""
     unit = "mrad" if result.runs[0].recording.kind == "revolute" else "mm"
     rows = [["run", f"rms error [{unit}]", f"largest [{unit}]", "than the first"]]
     last = () if result.true_run is None else (result.true_run,)
@@ -194,7 +194,7 @@ def run_rows(result: Commissioning) -> list[list[str]]:
 
 
 def summary(result: Commissioning) -> list[str]:
-    """What came of it, in sentences; none when the joint was only recorded."""
+    """Return the result in sentences; empty if the joint was only recorded."""
     if result.blocked is not None:
         return [
             f"{result.blocked.code} is blocking: {result.blocked.cause}.",
@@ -210,7 +210,7 @@ def summary(result: Commissioning) -> list[str]:
 
 
 def outcome(result: Commissioning) -> tuple[str, ...]:
-    """Return the level of the answer, and the answer in sentences: before all why it was stopped, if it was."""
+    """Return the level of the result and the result in sentences. Reasons of a stop come first."""
     emulated = "An emulated joint on an emulated drive: no hardware moved."
     lines = [emulated] if result.truth else []
     stopped = [each for each in result.runs if each.recording.metadata.get("stop")]
@@ -237,7 +237,7 @@ def _runs(result: Commissioning) -> list[str]:
 
 
 def timing_rows(result: Commissioning) -> list[list[str]]:
-    """How late samples and loop were in each run; the first row is the head, alone where nothing is known."""
+    """Return the lateness of samples and loop in each run. The first row is the header, alone if no timing is known."""
     head = ["timing", "cycles", "late or lost", "skipped", "most in a row"]
     rows = [[*head, "woke late [ms]", "time left [ms]"]]
     for name, recording in result.recordings().items():
@@ -260,14 +260,14 @@ def _timing(result: Commissioning) -> list[str]:
 
 
 def _compared(ratio: float) -> str:
-    """Say how many times smaller an error is."""
+    """Return how many times smaller or larger an error is."""
     if ratio < 1.0:
         return f"{1.0 / ratio:.1f} times larger"
     return f"{ratio:.1f} times smaller"
 
 
 def parameter_rows(result: Commissioning) -> list[list[str]]:
-    """What each cycle identified, beside what was assumed; the first row is the head."""
+    """Return the assumed values and those of each cycle. The first row is the header."""
     last = result.estimates[-1]
     head = ["parameter", "assumed at first"]
     head += [f"cycle {number}" for number in range(1, len(result.estimates) + 1)]

@@ -26,7 +26,7 @@ from jointid.simulation.arguments import Controller
 from jointid.simulation.scenario import believing
 
 Observer = Callable[..., object]
-_ENVELOPE = 2.0  # times what an identified joint needs
+_ENVELOPE = 2.0  # multiple of the torque that an identified joint needs
 
 
 def commission(
@@ -49,7 +49,7 @@ def commission(
     Parameters
     ----------
     bench : Bench
-        Its joint holds the parameters assumed at first.
+        Bench; its joint holds the initial assumptions of the parameters.
     cycles : int
         Number of cycles of identification and motion. Default 2. With 0, the joint moves once and is recorded;
         any controller may be used.
@@ -175,17 +175,17 @@ def commission(
 
 @contextmanager
 def _no_empty_folder(folder: Path | None) -> Iterator[None]:
-    """Take a folder away again that was made for a session that was not started."""
+    """Remove an empty folder that was created for a session that did not start."""
     try:
         yield
     finally:
         if folder is not None:
-            with suppress(OSError):  # it is not empty
+            with suppress(OSError):  # the folder is not empty
                 folder.rmdir()
 
 
 def _keep(error: BaseException, recordings: Mapping[str, Recording]) -> None:
-    """Let an exception carry what was recorded: without a folder it would be lost."""
+    """Attach the recordings to an exception, because without a folder they would be lost."""
     vars(error)["recordings"] = dict(recordings)
     if recordings:
         error.add_note(f"the attribute `recordings` has what was recorded: {', '.join(recordings)}")

@@ -1,1 +1,1 @@
-"""A bench in a file: joint, drive, motion, controller, limits."""
+"""Bench in a file: joint, drive, motion, controller, limits."""

@@ -1,4 +1,4 @@
-"""A bench: a joint, its drive, a motion, a controller and limits; and the type of drive that moves it."""
+"""Bench: a joint with its drive, motion, controller and limits, and the type of its drive."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ class Bench:
 
     @property
     def motion_warning(self) -> str:
-        """How this bench differs from the bench of its designed motion; empty if it does not."""
+        """Difference from the bench of the designed motion; empty without a difference."""
         if self.designed_for is None:
             return ""
         return self.designed_for.warning(

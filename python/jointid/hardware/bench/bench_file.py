@@ -1,4 +1,4 @@
-"""Bench files: a joint file's table `[session]`, read with the place of each value in every error."""
+"""Reader of bench files: the table `[session]` of a joint file. Each error names the place of the value."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _REQUIRED = {
     "controller": "which describes the controller",
 }
 _TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
-_ANGLES = ("amplitude", "offset", "distance")  # of a trajectory
+_ANGLES = ("amplitude", "offset", "distance")  # keys of a trajectory
 _LAWS = {name: law for name, law in LAWS.items() if law is not _core.OpenLoop}
 # Attributes of the emulated sensor that belong to the drive's encoder and converter.
 _NOT_EMULATED = {"encoder_counts", "velocity", "velocity_counts", "velocity_time"}
@@ -54,13 +54,13 @@ _EMULATED = ("integration_step", "position")
 
 
 def bench_fields(path: str | Path, *, with_motion: bool = True) -> dict[str, Any]:
-    """Return the fields of the bench that a file describes: see `Bench.load`.
+    """Return the fields of the bench in a file; see `Bench.load`.
 
     Parameters
     ----------
     path : path
     with_motion : bool
-        False: its motion is not read, and any stands in its place; for who makes the motion. Default True.
+        Whether to read the motion. False puts any motion in its place, for a program that makes it. Default True.
     """
     source = str(path)
     document = read_document(path)
@@ -117,7 +117,7 @@ def bench_fields(path: str | Path, *, with_motion: bool = True) -> dict[str, Any
 
 
 def _motion(table: Table, folder: Path) -> Motion:
-    """The motion of a file, named from the bench file's folder, or of the table's own keys."""
+    """Return the motion from a file (relative to the bench file's folder), or from the keys of the table."""
     if "file" not in table.entries:
         return Motion(trajectory=_trajectory(table))
     name = table.entries["file"]
@@ -133,7 +133,7 @@ def _motion(table: Table, folder: Path) -> Motion:
 
 
 def _check_peaks(table: Table, motion: Motion, limits: SessionLimits) -> None:
-    """Refuse a designed motion in which joints go beyond what the session allows."""
+    """Refuse a designed motion that exceeds the session's limits."""
     if motion.peaks is None:
         return
     beyond = limits.passed_by(motion.peaks)
@@ -166,7 +166,7 @@ def _controller(table: Table, joint: Joint, period: float) -> Controller:
     moved = MovingJoint.of(joint)
     if "coulomb" not in controller.asdict():
         return with_fitting_gains(controller, gains.entries, moved, period)
-    # Parameters of the joint file, unless this table has others.
+    # The joint file's parameters, unless this table has other values.
     try:
         controller = believing(controller, joint)
     except InputError as error:
@@ -195,7 +195,7 @@ def _emulation(table: Table, joint: Joint, adapter: DriveFormat) -> Emulation:
 
 
 def _check_truth(truth: Table, joint: Joint) -> None:
-    """Refuse a value of the truth that no simulated joint can have; what is missing is for the emulation to say."""
+    """Refuse true values that no simulated joint can have. The emulation reports missing values."""
     try:
         stepped_joint(joint)
     except InputError as error:

@@ -1,4 +1,4 @@
-"""The CAN bus of a bench."""
+"""CAN bus of a bench."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class BusOptions:
     bitrate : int
         Bit rate [bit/s]; for socketcan `ip link` sets it. Default 500 000.
     fd : bool
-        Send and receive CAN FD frames. Default false.
+        Whether to send and receive CAN FD frames. Default false.
     data_bitrate : int, optional
         Bit rate of the data in CAN FD frames [bit/s]. Default: `bitrate`.
     """

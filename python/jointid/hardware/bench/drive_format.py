@@ -1,4 +1,4 @@
-"""What a make of drive reads and writes of itself: its options, and its frames in a log."""
+"""Format of a make of drive: its options, and its frames in a log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 class DriveFormat:
-    """What a `DriveType` knows without a bench."""
+    """Part of a `DriveType` that needs no bench."""
 
     tables: tuple[str, ...] = ()
 
@@ -29,7 +29,7 @@ class DriveFormat:
             The table `[session]`; `session.table("drive").without("type").make(Options)` reads the fields of
             a dataclass from `[session.drive]`, with types, unknown keys and places checked.
         bus : BusOptions
-            From `[session.bus]`.
+            Options from `[session.bus]`.
 
         Raises
         ------
@@ -39,15 +39,15 @@ class DriveFormat:
         raise NotImplementedError
 
     def emulation(self, table: Table) -> Any:
-        """Return options of the emulated drive from those keys of `[session.emulated]` that are its own.
+        """Return the options of the emulated drive from its own keys of `[session.emulated]`.
 
-        Default: there are none, and any key raises InputError.
+        Default: no options; any key raises InputError.
         """
         table.check_names(())
         return None
 
     def metadata(self, options: Any) -> Mapping[str, Any]:
-        """Return the options as JSON's types, to be kept in each recording as "drive_options".
+        """Return the options in JSON types. Each recording keeps them as "drive_options".
 
         A drive that is opened by this type returns ``{"drive_type": name, "drive_options": …}`` from its own
         `metadata`. Default: the fields of the dataclass.
@@ -58,21 +58,21 @@ class DriveFormat:
         return found
 
     def wiring(self, options: Any) -> Mapping[str, Any]:
-        """Return those options that decide about signs and scales: a bench certificate is void when one changes.
+        """Return the options that set signs and scales. A change of one voids the bench certificate.
 
         Default: all of them.
         """
         return self.metadata(options)
 
     def recorded_options(self, metadata: Mapping[str, Any]) -> Any:
-        """Return the options that `metadata` wrote; the default ones when a recording has none.
+        """Return the options that `metadata` wrote, or the default options if a recording has none.
 
         Default: raises InputError, so that a frame log cannot be replayed.
 
         Raises
         ------
         InputError
-            They are not those of this type.
+            The options do not belong to this type.
         """
         del metadata
         raise self._no_replay()
@@ -84,18 +84,18 @@ class DriveFormat:
         options: Any,
         identity: Mapping[str, Any],
     ) -> Sequence[LoggedCycle]:
-        """Return the control cycles that a session's frame log holds, in order.
+        """Return the control cycles in a session's frame log, in order.
 
         Default: raises InputError.
 
         Parameters
         ----------
         frames : iterable of LoggedFrame
-            What the drive gave to its `tap`, and other nodes' frames in logs of other programs.
+            Frames that the drive gave to its `tap`. Logs of other programs also contain frames of other nodes.
         joint : Joint
         options : object
         identity : mapping
-            What `Drive.identity` returned in that session; empty when it is not known.
+            Result of `Drive.identity` in that session; empty if it is not known.
 
         Raises
         ------

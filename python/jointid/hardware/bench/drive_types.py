@@ -1,4 +1,4 @@
-"""The registry of drive types, which finds one by its name."""
+"""Registry that finds drive types by name."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ ENTRY_POINTS = "jointid.drives"
 """Group of entry points by which an installed package registers its drive types."""
 
 DEFAULT_TYPE = "elmo"
-"""Type of a joint file or recording that names none: both are older than drive types."""
+"""Drive type if a joint file or recording names none, because it is older than drive types."""
 
-# Found without an installed entry point, and loaded only when used.
+# Available without an installed entry point, and loaded only when used.
 _BUILT_IN = {"elmo": "jointid.hardware.elmo.drive_type:ElmoType"}
 
 
@@ -27,7 +27,7 @@ def drive_type_names() -> tuple[str, ...]:
 
 
 def adapter_of(name: str, kind: type[T]) -> T:
-    """Return the adapter of a drive type, of which the caller needs what `kind` has; see `drive_type`."""
+    """Return the adapter of a drive type as `kind`, the class that the caller needs; see `drive_type`."""
     if not isinstance(name, str):
         raise _refused(name, "a text is expected")
     found: tuple[EntryPoint, ...] = tuple(entry_points(group=ENTRY_POINTS, name=name))
@@ -47,7 +47,7 @@ def adapter_of(name: str, kind: type[T]) -> T:
 
 
 def _loaded(name: str, entry: EntryPoint, kind: type[T]) -> T:
-    """Return the adapter that a package supplies; whatever it raises is no bug of this program."""
+    """Return the adapter that a package supplies. An exception in it is not a bug of this program."""
     try:
         loaded = entry.load()
         adapter = loaded() if isinstance(loaded, type) else loaded
@@ -66,7 +66,7 @@ def _loaded(name: str, entry: EntryPoint, kind: type[T]) -> T:
 
 
 def _origin(entry: EntryPoint) -> str:
-    """The package that brings an entry point."""
+    """Return the package of an entry point."""
     return "an unknown package" if entry.dist is None else f"the package {entry.dist.name}"
 
 

@@ -1,4 +1,4 @@
-"""The joint that an emulated drive moves, with its true parameters."""
+"""Joint that an emulated drive moves, with its true parameters."""
 
 from __future__ import annotations
 

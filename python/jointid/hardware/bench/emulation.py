@@ -1,4 +1,4 @@
-"""The true values of an emulated bench."""
+"""True values of an emulated bench."""
 
 from __future__ import annotations
 
@@ -49,12 +49,12 @@ class Emulation:
 
 
 def joint_with_truth(joint: Joint, truth: Mapping[str, float]) -> Joint:
-    """A joint with true parameters, and ripple only where the truth has it.
+    """Return a joint with true parameters. It has ripple only if the truth has it.
 
     Raises
     ------
     InputError
-        A parameter that the joint's model does not have.
+        The joint's model does not have a parameter.
     """
     orders = tuple(
         order for order in joint.model.resolved.ripple if f"ripple_sin_{order:g}" in truth

@@ -1,4 +1,4 @@
-"""Options of a first motion: how slowly, how far, and with how much torque at most."""
+"""Options of a first motion: its speed, its distance, and its largest torque."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ class FirstMotionOptions:
         breakaway torque in the joint file, or twice without a torque sensor to watch; never more than the session's
         torque limit. Required without a breakaway torque and without a sensor to watch.
     compare_friction : bool
-        Compare the measured breakaway with the joint file's friction, which must be right within a factor of
+        Whether to compare the measured breakaway with the joint file's friction, which must be right within a factor of
         1.5. Set false if it is only a guess. Default true.
     watch_sensor : bool
-        Stop when the torque sensor's reading changes while the encoder stands. Set false for a sensor that
+        Whether to stop if the torque sensor's reading changes at a constant encoder count. Set false for a sensor that
         shows the motor's torque. Default true.
     hand_turn : float, optional
         Time to wait, motor off, until somebody turns the joint by hand by 50 counts [s]. Default: no wait; without
@@ -45,7 +45,7 @@ class FirstMotionOptions:
     velocity : float
         Highest speed [rad/s]; beyond it the motor goes off. Default 0.5.
     still_time : float
-        Time that the joint must stand still first, with the motor off and again with it on [s]. Default 0.5.
+        Time at rest before the motion, with the motor off and again with it on [s]. Default 0.5.
     moves : tuple of float, optional
         Amplitudes of the small motions under control, in order [rad]. Default: 0.1°, 0.2° and 0.3°, or a
         third, two thirds and all of 20 encoder counts if that is more.

@@ -1,4 +1,4 @@
-"""A session's frame log, read again: the recording that its frames hold."""
+"""Replay of a session's frame log: the recording is computed from its frames."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ from jointid.recording.recording import Recording
 from jointid.simulation.trajectory import Trajectory
 
 FloatArray = npt.NDArray[np.float64]
-_LEAST = 8  # samples of a recording
-_MOST = 10**9  # cycles before them
+_LEAST = 8  # fewest samples of a recording
+_MOST = 10**9  # largest number of cycles before them
 
 
 def replay(
@@ -129,7 +129,7 @@ def replay(
         time=due + shift,
         position=_column(cycles, "position"),
         torque=held_torque(torque[kept], torque[kept + 1], acted, period),
-        sensor=sensor if sensor.any() else None,  # 0 throughout: there is none
+        sensor=sensor if sensor.any() else None,  # all 0: there is no sensor
         reference=reference,
         current=None if np.isnan(current).any() else current,
         late=late if late.any() else None,
@@ -139,12 +139,12 @@ def replay(
     )
     try:
         return Recording(**fields)
-    except InputError as error:  # e.g. of a period that no session has
+    except InputError as error:  # e.g. for an impossible period
         raise error.at(str(file)) from None
 
 
 def _session(file: Path, recording: str | os.PathLike[str] | Recording | None) -> Recording | None:
-    """What the session recorded, where that is known."""
+    """Return the recording of the session, if it is known."""
     if isinstance(recording, Recording):
         return recording
     beside = file.with_suffix(".csv")
@@ -164,7 +164,7 @@ def _period(period: Any) -> float:
 
 
 def _check_count(found: int, before: int, session: Recording | None) -> None:
-    """See that the cycles of the run are all there."""
+    """Check that all cycles of the run are in the log."""
     if session is not None and found < len(session.time):
         raise InputError(
             f"{found} cycles of the run, the recording has {len(session.time)}; frames are missing "
@@ -182,7 +182,7 @@ def _late(
     before: int,
     session: Recording | None,
 ) -> FloatArray:
-    """What was late before each row: as recorded; without a recording, as many cycles as have no sample."""
+    """Return `late` of each row: as recorded; without a recording, the number of cycles without a sample."""
     late = np.diff(kept, prepend=before - 1).astype(np.float64) - 1.0
     if session is None:
         return late

@@ -1,4 +1,4 @@
-"""A bench's drive, opened: the real one over its bus, or an emulated one on virtual time."""
+"""Open a bench's drive: the real one over its bus, or an emulated one in virtual time."""
 
 from __future__ import annotations
 

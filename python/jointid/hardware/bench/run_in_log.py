@@ -1,4 +1,4 @@
-"""Which cycles of a frame log are a session's run: those with the positions of its recording."""
+"""Search for a session's run in a frame log: its positions must be those of the recording."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from jointid.base.errors import InputError
 from jointid.hardware.session.cycle import LoggedCycle
 from jointid.recording.recording import Recording
 
-_FARTHEST = 1000  # cycles from where the run should begin
-_SHARE = 1e-6  # of the motion, by which positions may differ
+_FARTHEST = 1000  # largest difference from the expected start, in cycles
+_SHARE = 1e-6  # share of the motion by which positions may differ
 _LEAST = 1e-9  # [rad]
 
 FloatArray = npt.NDArray[np.float64]
 
 
 class LoggedPositions:
-    """The positions of all cycles in a frame log.
+    """Positions of all cycles in a frame log.
 
     Parameters
     ----------
@@ -31,13 +31,13 @@ class LoggedPositions:
         self._position = np.array([cycle.position for cycle in every], dtype=np.float64)
 
     def kept(self, before: int) -> npt.NDArray[np.intp]:
-        """Return the cycles of a run that a session keeps: those with a sample, but the first behind one without."""
+        """Return the cycles that a session keeps: those with a sample, except the first after a cycle without one."""
         waited = np.concatenate([[False], self._lost[:-1]])
         waited[before : before + 1] = False
         return np.flatnonzero(~self._lost[before:] & ~waited[before:]) + before
 
     def begin(self, counted: int, session: Recording, *, scaled: bool) -> int | None:
-        """Return the cycles before the run; nearest to the number that the session counted where several fit.
+        """Return the number of cycles before the run. If several fit, it is the nearest to the session's number.
 
         A drive type may decode a command that the session did not count, such as a zero torque of `enable`.
 
@@ -46,12 +46,12 @@ class LoggedPositions:
         counted : int
         session : Recording
         scaled : bool
-            Positions may also be shifted and scaled: other options are tried.
+            Whether positions may also be shifted and scaled, because the options differ from the session's.
 
         Returns
         -------
         int or None
-            None: the positions are nowhere those of the recording.
+            None if no cycles have the positions of the recording.
         """
         lowest = max(0, counted - _FARTHEST)
         near = sorted(range(lowest, counted + _FARTHEST + 1), key=lambda n: abs(n - counted))
@@ -63,7 +63,7 @@ class LoggedPositions:
         return None
 
     def difference(self, before: int, session: Recording) -> InputError:
-        """Return what is wrong with a log whose positions are not those of the recording."""
+        """Return the error for a log with positions that differ from the recording's."""
         found = self._position[self.kept(before)[: len(session.position)]]
         row = int(np.argmax(~(np.abs(found - session.position) <= _tolerance(session.position))))
         return InputError(

@@ -1,4 +1,4 @@
-"""A table of a joint file, read key by key: each error names file, table and key."""
+"""Table of a joint file, read key by key. Each error names file, table and key."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Table:
     name : str
         Name in the file, e.g. "session.drive".
     source : str
-        The file.
+        Name of the file.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ class Table:
         Parameters
         ----------
         kind : callable
-            Has a default for each attribute, and a method `asdict`.
+            Class with a default for each attribute, and a method `asdict`.
         unknown : collection of str
             Attributes that are not keys of this table.
         """
@@ -160,10 +160,10 @@ class Table:
 
 
 def types_of(kind: Any) -> dict[str, str]:
-    """Return the fields of a dataclass and their types as text."""
+    """Return the field names of a dataclass and their types as text."""
     return {item.name: type_name(item.type) for item in fields(kind)}
 
 
 def type_name(annotation: Any) -> str:
-    """Return a type as text, which it is already where annotations are postponed."""
+    """Return a type as text. With postponed annotations it already is text."""
     return annotation.__name__ if isinstance(annotation, type) else str(annotation)

@@ -1,1 +1,1 @@
-"""The CAN bus, CANopen frames, and logs of frames."""
+"""CAN bus, CANopen frames, and logs of frames."""

@@ -1,4 +1,4 @@
-"""Frame logs in BLF: their packed parts are unpacked here, because python-can does so without a limit."""
+"""Frame logs in BLF. Their compressed parts are unpacked here, because python-can sets no limit for the size."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from jointid.base.errors import InputError
 from jointid.base.unpacking import Room
 
 _FILE = struct.Struct("<4sL")  # signature, size of the header
-_FILE_HEAD = 72  # bytes, without what fills it up
+_FILE_HEAD = 72  # bytes, without padding
 _OBJECT = struct.Struct("<4sHHLL")  # signature, size and version of the header, size, kind
-_CONTAINER = struct.Struct("<H6xL4x")  # method, size when unpacked
+_CONTAINER = struct.Struct("<H6xL4x")  # method, unpacked size
 _HEAD = _OBJECT.size + _CONTAINER.size
 _CONTAINER_KIND = 10
 _STORED, _ZLIB = 0, 2  # methods
-_LARGEST = 1 << 20  # bytes of an object; a frame has some hundred
+_LARGEST = 1 << 20  # bytes of an object; a frame has a few hundred
 _MOST = (1 << 32) - 1 - _HEAD  # bytes that a container may state
 
 
 def unpacked(path: Path) -> BytesIO:
-    """Return a BLF file whose packed parts are plain; what is damaged, and all behind it, stays as it is.
+    """Return a BLF file with unpacked parts. Damaged data and everything after it stay unchanged.
 
     Parameters
     ----------
@@ -31,12 +31,12 @@ def unpacked(path: Path) -> BytesIO:
     Raises
     ------
     TooLargeError
-        It holds more than it may.
+        The unpacked data are too large.
     InputError
-        An object says that it is smaller than its header, which python-can would read again and again, or that it is
-        very large. Or a part is packed in another way, which python-can would leave out.
+        An object claims to be smaller than its header, which python-can would read again and again, or it is
+        very large. Or the compression method of a part is unknown; python-can would omit this part.
     OSError
-        It cannot be read.
+        The file cannot be read.
     """
     content = path.read_bytes()
     room = Room(path, len(content))
@@ -44,14 +44,14 @@ def unpacked(path: Path) -> BytesIO:
         return BytesIO(content)
     place = _FILE.unpack_from(content)[1]
     parts = [content[:place]]
-    if place < _FILE_HEAD:  # python-can reads a negative length: all that is left, of a BytesIO
+    if place < _FILE_HEAD:  # a negative length makes python-can read all the rest
         return BytesIO(*parts)
-    unfinished: bytes | None = b""  # an object may go on in the next container
+    unfinished: bytes | None = b""  # an object may continue in the next container
     while unfinished is not None and place + _OBJECT.size <= len(content):
         signature, _, _, size, kind = _OBJECT.unpack_from(content, place)
         if signature != b"LOBJ":
             break
-        if size < _OBJECT.size:  # as above
+        if size < _OBJECT.size:  # see above
             return BytesIO(b"".join([*parts, signature]))
         beyond = place + size + size % 4
         part = content[place:beyond]
@@ -70,7 +70,7 @@ def unpacked(path: Path) -> BytesIO:
 
 
 def _plain(part: bytes, room: Room) -> bytes:
-    """Return what a container holds."""
+    """Return the content of a container."""
     method, _ = _CONTAINER.unpack_from(part, _OBJECT.size)
     if method == _STORED:
         return part[_HEAD:]
@@ -84,7 +84,7 @@ def _plain(part: bytes, room: Room) -> bytes:
 
 
 def _container(part: bytes, plain: bytes) -> bytes:
-    """Return a container that holds the same as it is."""
+    """Return a container with the same content, not compressed."""
     signature, length, version, _, kind = _OBJECT.unpack_from(part)
     size = _HEAD + len(plain)
     head = _OBJECT.pack(signature, length, version, size, kind)
@@ -92,7 +92,7 @@ def _container(part: bytes, plain: bytes) -> bytes:
 
 
 def _behind_objects(content: bytes) -> bytes | None:
-    """Return what is behind the last whole object; None where no object follows, and python-can reads no further."""
+    """Return the data after the last whole object; None if no object follows, where python-can stops reading."""
     place = 0
     while (found := content.find(b"LOBJ", place, place + 8)) >= 0:
         if found + _OBJECT.size > len(content):
@@ -100,7 +100,7 @@ def _behind_objects(content: bytes) -> bytes | None:
         size = _OBJECT.unpack_from(content, found)[3]
         if size < _OBJECT.size:
             raise InputError(f"an object has {size} bytes, less than its header")
-        if size > _LARGEST:  # it would be joined anew from each container
+        if size > _LARGEST:  # it would be joined again for each container
             raise InputError(f"an object has {size} bytes, more than {_LARGEST}")
         if found + size > len(content):
             break

@@ -1,4 +1,4 @@
-"""A CAN bus opened for a session: only the frames that it needs, and errors that name the remedy."""
+"""CAN bus of a session: it receives only the necessary frames, and its errors name the remedy."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 _NETWORKS = Path("/sys/class/net")
 _IS_UP = 0x1  # IFF_UP
-_FD_SIZE = 72  # bytes of a frame of CAN FD as Linux has it
-_FASTEST = 8_000_000  # [bit/s], of the data of CAN FD
-_HIGHEST, _ALL_BITS = 0x7FF, 0x1FFFFFFF  # of an identifier of 11 and of 29 bits
+_FD_SIZE = 72  # bytes of a CAN FD frame in Linux
+_FASTEST = 8_000_000  # [bit/s], for the data of CAN FD
+_HIGHEST, _ALL_BITS = 0x7FF, 0x1FFFFFFF  # identifiers of 11 and of 29 bits
 
 
 @contextmanager
@@ -80,12 +80,12 @@ def open_bus(
 
 
 def check_interface(interface: str) -> None:
-    """See that python-can knows an interface, as far as it is installed.
+    """Check that python-can knows an interface, if python-can is installed.
 
     Raises
     ------
     InputError
-        It does not.
+        The interface is unknown.
     """
     if interface == "emulated":
         reason = (
@@ -103,12 +103,12 @@ def check_interface(interface: str) -> None:
 
 
 def check_bitrates(bitrate: int, *, fd: bool, data_bitrate: int | None) -> None:
-    """See that a bus can have these bit rates.
+    """Check that a bus can have these bit rates.
 
     Raises
     ------
     InputError
-        It cannot.
+        A bit rate is not possible.
     """
     if not 10_000 <= bitrate <= 1_000_000:
         raise InputError("10 000 to 1 000 000 bit/s is expected", argument="bitrate", value=bitrate)
@@ -130,7 +130,7 @@ def check_bitrates(bitrate: int, *, fd: bool, data_bitrate: int | None) -> None:
 
 
 def _filter(identifier: int, extended: bool) -> dict[str, Any]:
-    """Pass one identifier on; one above 7FFh has 29 bits in any case."""
+    """Return the filter that passes one identifier. An identifier above 7FFh has 29 bits in any case."""
     long = extended or identifier > _HIGHEST
     return {"can_id": identifier, "can_mask": _ALL_BITS if long else _HIGHEST, "extended": long}
 
@@ -167,21 +167,21 @@ def _opened(
     try:
         return can.Bus(channel, interface=interface, **settings)
     except (can.CanError, OSError, ImportError, ValueError, RuntimeError) as error:
-        # Each of python-can's interfaces has errors of its own.
+        # Each interface of python-can raises its own errors.
         raise InputError(
             _reason(error), argument="channel", value=channel, place=f"interface {interface!r}"
         ) from error
 
 
 def _fd_settings(interface: str, bitrate: int, data_bitrate: int) -> dict[str, Any]:
-    """What python-can's interfaces call CAN FD."""
+    """Return the settings for CAN FD of a python-can interface."""
     import can
 
     if interface in ("socketcan", "udp_multicast"):
         return {"fd": True}
     if interface == "virtual":
         return {"protocol": can.CanProtocol.CAN_FD}
-    if interface == "pcan":  # it takes no bit rates
+    if interface == "pcan":  # it accepts no bit rates
         timing = can.BitTimingFd.from_sample_point(
             f_clock=80_000_000,
             nom_bitrate=bitrate,
@@ -194,7 +194,7 @@ def _fd_settings(interface: str, bitrate: int, data_bitrate: int) -> dict[str, A
 
 
 def _check_network(channel: str, bitrate: int, data_bitrate: int | None) -> None:
-    """Linux opens a network that is down without an error, and fails at the first frame."""
+    """Check that the network is up. Linux opens a network that is down, and fails only at the first frame."""
     up = f"sudo ip link set {channel} up type can bitrate {bitrate}"
     if data_bitrate is not None:
         up += f" dbitrate {data_bitrate} fd on"

@@ -1,12 +1,12 @@
-"""Meaning of a CAN controller's error frames (Linux's classes, which python-can passes on)."""
+"""Meaning of a CAN controller's error frames, in Linux's classes as python-can passes them on."""
 
 from __future__ import annotations
 
-_LOST_ARBITRATION = 0x02  # a frame of higher priority went first: no error on a shared bus
+_LOST_ARBITRATION = 0x02  # a frame of higher priority came first; no error on a shared bus
 _CONTROLLER, _ACTIVE_AGAIN = (
     0x04,
     0x40,
-)  # the second byte has details: recovered, no errors any more
+)  # details in the second byte: recovered, no errors any more
 _CLASSES = {
     0x01: "transmission timed out",
     0x04: "controller in trouble (too many errors, or overflow)",
@@ -20,16 +20,16 @@ _CLASSES = {
 
 
 def error_frame_meaning(classes: int, details: bytes = b"") -> str:
-    """Return the meaning of an error frame's classes; empty when it is no reason to stop.
+    """Return the meaning of an error frame's classes; empty if it is no reason to stop.
 
     Parameters
     ----------
     classes : int
-        The identifier of the error frame.
+        Identifier of the error frame.
     details : bytes
-        Its bytes; the second says what is wrong with the controller.
+        Bytes of the error frame; the second one is the controller's problem.
     """
-    if classes & 0x200:  # error counters are in the frame: no trouble by itself
+    if classes & 0x200:  # the frame contains error counters; this alone is no problem
         classes &= ~0x200
         if not classes & 0x1FF:
             return ""

@@ -1,4 +1,4 @@
-"""The few CANopen frames that a session needs (CiA 301): network, SYNC, heartbeat, expedited SDO."""
+"""CANopen frames that a session needs (CiA 301): network, SYNC, heartbeat, expedited SDO."""
 
 from __future__ import annotations
 
@@ -39,31 +39,31 @@ class SdoAbortError(RuntimeError):
 
 
 def heartbeat_id(node: int) -> int:
-    """COB-ID of a node's boot-up message and heartbeat."""
+    """Return the COB-ID of a node's boot-up message and heartbeat."""
     return 0x700 + node
 
 
 def emergency_id(node: int) -> int:
-    """COB-ID of a node's emergencies."""
+    """Return the COB-ID of a node's emergency messages."""
     return 0x080 + node
 
 
 def network(command: int, node: int) -> bytes:
-    """A network command's bytes."""
+    """Return the bytes of a network command."""
     return bytes((command, node))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SdoRequest:
-    """A read, or a write of at most four bytes.
+    """SDO request: a read, or a write of at most four bytes.
 
     Attributes
     ----------
     index, subindex : int
     value : int or None
-        None: a read.
+        Value to write; None for a read.
     size : int
-        Bytes of the value, 1, 2 or 4.
+        Number of bytes of the value: 1, 2 or 4.
     """
 
     index: int
@@ -72,7 +72,7 @@ class SdoRequest:
     size: int = 4
 
     def payload(self) -> bytes:
-        """The request's eight bytes."""
+        """Return the eight bytes of the request."""
         place = struct.pack("<HB", self.index, self.subindex)
         if self.value is None:
             return b"\x40" + place + bytes(4)
@@ -81,12 +81,12 @@ class SdoRequest:
 
     @classmethod
     def of(cls, payload: bytes) -> SdoRequest:
-        """The request of a frame.
+        """Return the request in a frame.
 
         Raises
         ------
         InputError
-            No expedited request.
+            The frame is not an expedited request.
         """
         if len(payload) != 8:
             raise InputError(f"an SDO request of {len(payload)} bytes; 8 are expected")
@@ -103,7 +103,7 @@ class SdoRequest:
 
 
 def sdo_answer(request: SdoRequest, value: int | None = None) -> bytes:
-    """What a drive answers to a request: done, or the value of a read."""
+    """Return a drive's answer to a request: a confirmed write, or the value of a read."""
     place = struct.pack("<HB", request.index, request.subindex)
     if value is None:
         return b"\x60" + place + bytes(4)
@@ -111,12 +111,12 @@ def sdo_answer(request: SdoRequest, value: int | None = None) -> bytes:
 
 
 def sdo_abort(request: SdoRequest, code: int) -> bytes:
-    """What a drive answers when it refuses."""
+    """Return a drive's answer that refuses a request."""
     return b"\x80" + struct.pack("<HBI", request.index, request.subindex, code)
 
 
 def sdo_result(payload: bytes, request: SdoRequest) -> int | None:
-    """The value that an answer holds, 0 after a write; None when it answers something else.
+    """Return the value in an answer, 0 after a write; None if it answers another request.
 
     Raises
     ------

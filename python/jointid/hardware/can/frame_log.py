@@ -1,4 +1,4 @@
-"""Frames out of a log file: what a session wrote, candump, or any program whose format python-can reads."""
+"""Frames from a log file: of a session, of candump, or of another program with a format that python-can reads."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jointid.base.unpacking import TooLargeError
 from jointid.hardware.can.blf_file import unpacked
 
 _HIGHEST, _HIGHEST_EXTENDED = 0x7FF, 0x1FFFFFFF  # identifiers of 11 and 29 bits
-_LONGEST = 64  # bytes: a drive of another make may use long frames
+_LONGEST = 64  # bytes; a drive of another make may use long frames
 ENDINGS = (".log", ".asc", ".blf")
 
 
@@ -46,11 +46,10 @@ class LoggedFrame(NamedTuple):
 
 
 def logged_frames(path: Path) -> Iterator[LoggedFrame]:
-    """Yield the frames, in the file's order; error frames and requests without bytes are left out.
+    """Yield the frames in the order of the file, without error frames and requests without bytes.
 
-    Frames that were received although the host sends frames with their identifier are another master's,
-    and are left out too, where the file says which were sent. A last line that is cut off is no frame.
-    Errors do not name the file: the caller does.
+    A received frame with an identifier that the host also sends is from another master. It is left out, too, if the
+    file marks the sent frames. An incomplete last line is ignored. Errors do not name the file; the caller adds it.
 
     Parameters
     ----------
@@ -60,8 +59,8 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     Raises
     ------
     InputError
-        The file cannot be read, or a frame is none that a bus can carry: an identifier above 7FFh (of 29 bits above
-        1FFFFFFFh), more than 64 bytes, a stamp that is not finite; or it is much larger when it is unpacked.
+        The file cannot be read, or is much larger when unpacked. Or a frame is not possible on a bus: an identifier
+        above 7FFh (1FFFFFFFh for 29 bits), more than 64 bytes, a time stamp that is not finite.
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(
@@ -90,7 +89,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
                     fd=message.is_fd,
                     sent=not message.is_rx,
                 )
-    except TooLargeError as error:  # its remedy is one of `load`, and it names the file
+    except TooLargeError as error:  # its remedy belongs to `load`, and it names the file
         raise InputError(error.reason) from None
     except InputError:
         raise
@@ -98,14 +97,14 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
         raise InputError("there is no such file") from None
     except OSError as error:
         raise InputError(f"the file cannot be read ({error.strerror})") from None
-    except Exception as error:  # each of python-can's readers has errors of its own
+    except Exception as error:  # each reader of python-can raises its own errors
         raise InputError(
             f"the data after frame {number} are not a frame ({reason_of(error)})"
         ) from error
 
 
 def _problem(message: can.Message) -> str:
-    """What no frame has; python-can's readers do not look."""
+    """Return the reason why a message is not a valid frame; python-can's readers do not check this."""
     if not math.isfinite(message.timestamp):
         return "has a stamp that is not a number"
     highest = _HIGHEST_EXTENDED if message.is_extended_id else _HIGHEST

@@ -1,4 +1,4 @@
-"""An SDO read of any length, e.g. of a text: expedited, or in segments of seven bytes (CiA 301)."""
+"""SDO read of any length, e.g. of a text: expedited, or in segments of seven bytes (CiA 301)."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from collections.abc import Callable
 from jointid.base.errors import InputError
 from jointid.hardware.can.canopen_frames import SdoAbortError
 
-_MOST_SEGMENTS = 256  # a text of 1.8 kB; a server that never ends is left
+_MOST_SEGMENTS = 256  # a text of 1.8 kB; reading stops if a server never ends
 _LAST, _TOGGLE, _ABORTED = 0x01, 0x10, 0x80
 
 
 def upload(exchange: Callable[[bytes], bytes], index: int, subindex: int) -> bytes:
-    """Return an object's bytes.
+    """Return the bytes of an object.
 
     Parameters
     ----------
     exchange : callable
-        Sends a request's eight bytes, returns the answer's.
+        Sends the eight bytes of a request and returns those of the answer.
     index, subindex : int
 
     Raises
     ------
     SdoAbortError
-        The drive refuses.
+        The drive refused the request.
     InputError
-        An answer is none to the request.
+        An answer does not belong to the request.
     """
     answer = _answer(exchange, b"\x40" + struct.pack("<HB", index, subindex) + bytes(4), index)
     command = answer[0]

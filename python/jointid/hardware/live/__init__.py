@@ -1,1 +1,1 @@
-"""What a session shows while it runs: a line on the console, a window."""
+"""Display of a session while it runs: a line on the console, a window."""

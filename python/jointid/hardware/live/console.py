@@ -1,4 +1,4 @@
-"""What a session shows while it runs: a line on the console, and several observers at once."""
+"""Display of a session while it runs: a line on the console, and several observers at once."""
 
 from __future__ import annotations
 
@@ -43,17 +43,17 @@ class ConsoleLine:
     def __call__(
         self, phase: str, when: float, sample: DriveSample, reference: float, torque: float
     ) -> None:
-        """Take a cycle's values."""
+        """Take the values of a cycle."""
         self._last = (phase, when, sample, reference, torque)
         now = self._now()
-        # A new phase is shown at once only where it does not flicker.
+        # A new phase is shown at once only if this causes no flicker.
         new_phase = phase != self._phase and not self._terminal
         if now >= self._due or new_phase:
             self._due, self._phase, self._last = now + self._interval, phase, None
             self._lines.put(console_line(phase, when, sample, reference, torque))
 
     def close(self) -> None:
-        """Write the last line, unless it is written already."""
+        """Write the last line if it is not written yet."""
         if not self._thread.is_alive():
             return
         if self._last is not None:
@@ -73,7 +73,7 @@ class ConsoleLine:
             while (line := self._lines.get()) is not None:
                 while (
                     self._terminal and not self._lines.empty()
-                ):  # only the newest is worth drawing
+                ):  # only the newest values are drawn
                     following = self._lines.get()
                     if following is None:
                         self._lines.put(None)
@@ -89,11 +89,11 @@ class ConsoleLine:
                 self._stream.write("\n")
                 self._stream.flush()
         except (OSError, ValueError):
-            return  # a console that has gone is no reason to stop a motor
+            return  # a closed console is no reason to stop a motor
 
 
 class Observers:
-    """Several observers as one; closing closes those that can be closed.
+    """Several observers as one. `close` closes those that have a method `close`.
 
     Parameters
     ----------
@@ -106,12 +106,12 @@ class Observers:
     def __call__(
         self, phase: str, when: float, sample: DriveSample, reference: float, torque: float
     ) -> None:
-        """Call all of them."""
+        """Call all observers."""
         for observer in self._observers:
             observer(phase, when, sample, reference, torque)
 
     def close(self) -> None:
-        """Close them, each whatever the others raise."""
+        """Close all observers, even if some raise."""
         failures: list[Exception] = []
         for observer in self._observers:
             close = getattr(observer, "close", None)
@@ -133,7 +133,7 @@ class Observers:
 def console_line(
     phase: str, when: float, sample: DriveSample, reference: float, torque: float
 ) -> str:
-    """The line of a cycle: phase, time [s], position and its error [°], torque [N·m], sensor."""
+    """Return the line of a cycle: phase, time [s], position and its error [°], torque [N·m], sensor."""
     error = math.degrees(sample.position - reference)
     sensor = "clipped" if sample.clipped else f"{sample.reading:7.1f}"
     return (

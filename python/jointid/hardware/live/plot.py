@@ -1,4 +1,4 @@
-"""A session's signals drawn while it runs, in a window of another interpreter."""
+"""Plot of a session's signals while it runs, in a window of another process."""
 
 from __future__ import annotations
 
@@ -76,9 +76,9 @@ class LivePlot:
     def __call__(
         self, phase: str, when: float, sample: DriveSample, reference: float, torque: float
     ) -> None:
-        """Take a cycle's values."""
+        """Take the values of a cycle."""
         if phase != self._phase and when < self._before - self._shift:
-            self._shift = self._before  # each phase begins at 0; the picture goes on
+            self._shift = self._before  # each phase begins at 0, but the time axis continues
         self._phase = phase
         shown = when + self._shift
         self._before = max(self._before, shown)
@@ -92,7 +92,7 @@ class LivePlot:
             self._write()
 
     def close(self) -> None:
-        """Close the window, after writing its picture to disk."""
+        """Close the window after its picture is written to disk."""
         if self._window.stdin is None or self._window.stdin.closed:
             return
         os.set_blocking(self._pipe, True)
@@ -108,7 +108,7 @@ class LivePlot:
         self.close()
 
     def _write(self) -> None:
-        """A pipe takes up to 4096 bytes whole or not at all; a window that was closed takes nothing."""
+        """Write points to the pipe. It takes up to 4096 bytes completely or not at all; a closed window takes none."""
         while self._waiting:
             part = bytes(self._waiting[: 4096 // POINT.size * POINT.size])
             try:

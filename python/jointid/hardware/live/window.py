@@ -1,4 +1,4 @@
-"""The window of a `LivePlot`: reads points from its input and draws them, until the input ends."""
+"""Window of a `LivePlot`: it reads points from its input and draws them until the input ends."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ Point = tuple[float, float, float, float, float]
 
 
 class Panels:
-    """Three pictures above one another: position, error, torque with the sensor.
+    """Three panels, one above the other: position, error, torque with the sensor.
 
     Parameters
     ----------
     figure : matplotlib.figure.Figure
     span : float
-        [s]
+        Time span of the panels [s].
     """
 
     def __init__(self, figure: Any, span: float) -> None:
@@ -44,13 +44,13 @@ class Panels:
         self._axes = (position, error, torque, sensor)
 
     def add(self, points: list[Point]) -> None:
-        """Take points; what is older than the span leaves the picture."""
+        """Add points. Points older than the span are removed."""
         self._points.extend(points)
         while self._points and self._points[-1][0] - self._points[0][0] > self._span:
             self._points.popleft()
 
     def draw(self) -> None:
-        """Bring the picture up to the points."""
+        """Draw the newest points."""
         if not self._points:
             return
         time, position, reference, torque, reading = zip(*self._points, strict=True)
@@ -107,7 +107,7 @@ def main() -> int:
 
 
 def _read(pipe: int) -> bytes | None:
-    """What there is; empty at the end, None when there is nothing yet."""
+    """Return the available bytes; empty at the end, None if there are none yet."""
     try:
         return os.read(pipe, 1 << 16)
     except BlockingIOError:

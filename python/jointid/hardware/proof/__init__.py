@@ -1,1 +1,1 @@
-"""A bench proven before it is trusted: check, first motion, certificate."""
+"""Proof of a bench before its use: check, first motion, certificate."""

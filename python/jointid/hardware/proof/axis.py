@@ -1,4 +1,4 @@
-"""A joint in the hands of a first motion: one cycle after the other, each within its bounds."""
+"""Axis of a first motion: it runs cycle by cycle and checks its bounds in each."""
 
 from __future__ import annotations
 
@@ -18,20 +18,20 @@ from jointid.hardware.session.drive import Drive, DriveFaultError, DriveSample
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.limits import SessionLimits
 
-_LOST = 3  # samples in a row that do not come end it; until then there is no torque
-_SETTLED = 0.1  # [s] without a count: the joint stands
-_STOPPING = 3.0  # [s] that it may take to
+_LOST = 3  # lost samples in a row that end it; until then the torque is 0
+_SETTLED = 0.1  # [s] without a count: the joint is at rest
+_STOPPING = 3.0  # [s], longest time until rest
 _FOLLOWED = 20  # cycles over which the drive's current is compared with the command
 
 
 @dataclass(frozen=True, slots=True)
 class Trace:
-    """What some cycles measured.
+    """Measurements of some cycles.
 
     Attributes
     ----------
     time, position, torque, reading : ndarray
-        [s]; [rad]; commanded from this sample on [N·m]; raw reading of the torque sensor.
+        Time [s]; position [rad]; torque commanded from this sample on [N·m]; raw reading of the torque sensor.
     """
 
     time: npt.NDArray[np.float64]
@@ -41,31 +41,31 @@ class Trace:
 
 
 class Axis:
-    """Reads and commands a drive in turn, and refuses whatever is beyond the bounds of a first motion.
+    """Reads and commands a drive in turn, and refuses a bench that leaves the bounds of a first motion.
 
     Parameters
     ----------
     drive : Drive
-        Connected; its motor is off at first.
+        Connected drive; its motor is off at first.
     limits : SessionLimits
     options : FirstMotionOptions
     period : float
-        [s]
+        Period of the cycles [s].
     sizes : Sizes
     interruptions : Interruptions
 
     Attributes
     ----------
     travel : float
-        Farthest from the start until now [rad].
+        Largest distance from the start until now [rad].
     largest_torque : float
-        Largest magnitude that was accepted by the drive [N·m].
+        Largest magnitude that the drive accepted [N·m].
     lost : int
-        Samples that did not come in time.
+        Number of samples that did not arrive in time.
     sample : DriveSample
-        The last one.
+        Last sample.
     encoder_watch : EncoderWatch or None
-        From when the breakaway is known.
+        Watch of the encoder; None until the breakaway torque is known.
     """
 
     def __init__(
@@ -99,36 +99,36 @@ class Axis:
 
     @property
     def latency(self) -> float:
-        """From sending a command until it acts [s]."""
+        """Delay from sending a command until it acts [s]."""
         return self._drive.command_latency
 
     @contextmanager
     def by_hand(self) -> Iterator[None]:
-        """Without bounds, for as long as somebody turns the joint; they begin anew where it is left."""
+        """Suspend the bounds while somebody turns the joint. Afterwards they start at its new position."""
         self._free = True
         yield
         self._free = False
         self._start, self.travel = self.sample.position, 0.0
 
     def enable(self) -> None:
-        """Switch the motor on, at no torque."""
+        """Switch the motor on at zero torque."""
         self._drive.enable()
         self.on, self._switched = True, self._drive.clock.now()
         self._next = self._switched
 
     def read(self) -> DriveSample:
-        """Return the state of the next cycle; a sample that does not come is awaited at no torque.
+        """Return the state of the next cycle. While a sample is late, the torque is 0.
 
         Raises
         ------
         RefusedBenchError
-            Beyond the bounds.
+            A bound is exceeded.
         DriveFaultError
-            The drive has failed, or samples are lost one after the other.
+            The drive has failed, or too many samples in a row are lost.
         """
         clock = self._drive.clock
         while True:
-            # A late cycle is not caught up with: the next one is a period from now at least.
+            # A late cycle is not repeated: the next one begins at least a period from now.
             self._next = (
                 max(self._next + self.period, clock.now()) if self.on else clock.now() + self.period
             )
@@ -145,7 +145,7 @@ class Axis:
                 self._lost, self.lost = self._lost + 1, self.lost + 1
                 if error.kind != "stale_position" or self._lost >= _LOST:
                     raise
-                if self.on:  # nobody sees the joint: no torque, and a sign of life with it
+                if self.on:  # without a sample: zero torque, which is also a sign of life
                     self._drive.command(0.0)
                     self._torque = 0.0
                 continue
@@ -155,7 +155,7 @@ class Axis:
             return sample
 
     def command(self, torque: float) -> None:
-        """Command a torque until the next cycle [N·m]."""
+        """Command a torque [N·m] until the next cycle."""
         accepted = self._drive.command(torque)
         self._torque = torque
         self.largest_torque = max(self.largest_torque, abs(accepted))
@@ -163,19 +163,19 @@ class Axis:
         self.rows.append((sample.time, sample.position, accepted, sample.reading))
 
     def rest(self) -> None:
-        """Command no torque until the joint stands.
+        """Command zero torque until the joint is at rest.
 
         Raises
         ------
         RefusedBenchError
-            It does not.
+            The joint does not come to rest.
         """
         self.command(0.0)
         place, since, end = self.sample.position, self.now, self.now + _STOPPING
         while self.now - since < _SETTLED:
             sample = self.read()
             self.command(0.0)
-            if abs(sample.position - place) > 1.5 * self.resolution:  # a count of jitter is none
+            if abs(sample.position - place) > 1.5 * self.resolution:  # one count may be jitter
                 place, since = sample.position, self.now
             if self.now > end:
                 raise RefusedBenchError(
@@ -202,9 +202,7 @@ class Axis:
                 "too_far",
                 f"the joint is {self.travel:.5f} rad from its start, more than {self.sizes.travel:.5f} rad",
             )
-        certain = (
-            abs(position - before.position) - self.resolution
-        )  # a count is as much as rounding adds
+        certain = abs(position - before.position) - self.resolution  # rounding adds at most a count
         speed = certain / max(sample.time - before.time, 0.5 * self.period)
         if speed > options.velocity:
             raise RefusedBenchError(
@@ -222,7 +220,7 @@ class Axis:
             self._follow(sample.torque)
 
     def _follow(self, torque: float) -> None:
-        """Refuse a current that stays away from the command: a phase that is open, a limit in the drive."""
+        """Refuse a current that differs from the command for some time: an open phase, a limit in the drive."""
         apart = abs(torque - self._torque) > 0.25 * abs(self._torque) + 0.01 * self._limits.torque
         self._unfollowed = self._unfollowed + 1 if apart else 0
         if self._unfollowed > _FOLLOWED:

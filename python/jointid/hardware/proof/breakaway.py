@@ -1,4 +1,4 @@
-"""Breakaway: the torque from zero, slowly, until the joint moves."""
+"""Breakaway: the torque grows slowly from zero until the joint moves."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.proof.sensor_watch import SensorWatch
 
-_QUIET = 0.2  # [s] at no torque, in which the sensor's mean is taken
-_WIND_UP = 0.1  # [s] that the torque is held after the first counts: what still moves then slides
-_SWING = 0.1  # [s]
-_FLOOR = 300.0  # the torque begins to grow like the cap over this
+_QUIET = 0.2  # [s] at zero torque, to average the sensor
+_WIND_UP = 0.1  # [s], hold of the torque after the first counts; a joint that moves on slides
+_SWING = 0.1  # [s], period of a slow oscillation
+_FLOOR = 300.0  # the growth begins as if the torque were the cap divided by this
 
 
 @dataclass(frozen=True, slots=True)
 class Breakaway:
-    """Where a joint began to move.
+    """Start of a joint's motion.
 
     Attributes
     ----------
     torque : float
-        Magnitude [N·m], by the joint file's constants.
+        Magnitude of the breakaway torque [N·m], by the joint file's constants.
     along : bool
-        It moved the way that the torque pushes.
+        Whether the joint moved in the direction of the torque.
     wind_up : float
-        Angle by which it had yielded before, without sliding [rad].
+        Elastic angle before the joint slides [rad].
     """
 
     torque: float
@@ -42,31 +42,31 @@ def find_breakaway(
     options: FirstMotionOptions,
     deviation: float = math.nan,
 ) -> Breakaway:
-    """Raise the torque until the joint slides, cut it in the same cycle, and wait until the joint stands.
+    """Raise the torque until the joint slides, set it to zero in the same cycle, and wait until the joint is at rest.
 
-    The torque grows by a constant share in each cycle. With the first counts it is held: a gear that winds up
-    comes to rest and the torque goes on; a joint that slides goes on by itself.
+    The torque grows by a constant share in each cycle. It is held at the first counts. An elastic gear then comes to
+    rest, and the torque grows again. A sliding joint goes on.
 
     Parameters
     ----------
     axis : Axis
-        At rest, motor on.
+        Axis at rest, motor on.
     direction : float
         1 or -1.
     cap : float
         Largest torque [N·m].
     options : FirstMotionOptions
     deviation : float
-        Deviation of the torque sensor's readings at rest. Default: NaN, no sensor to watch.
+        Standard deviation of the torque sensor's readings at rest. Default: NaN, the sensor is not used.
 
     Raises
     ------
     RefusedBenchError
-        No motion up to the cap, a sensor that shows one that the encoder does not, or a bound of the axis.
+        No motion up to the cap, a motion that only the sensor shows, or an exceeded bound of the axis.
     """
     watch = _watch(axis, deviation)
     start = place = axis.sample.position
-    torque, held, swing = 0.0, -1.0, 0.0  # held: since when, if not negative
+    torque, held, swing = 0.0, -1.0, 0.0  # held: begin of the hold, or negative
     few, more = axis.sizes.few, axis.sizes.more
     quiet, since = place, axis.now
     while True:
@@ -81,7 +81,7 @@ def find_breakaway(
                 "torque, set watch_sensor = false in [session.first_motion]",
             )
         if held < 0.0 and abs(position - place) > (1.0 - 1e-6) * few:
-            # A gear that has been winding up swings on for as far as it goes in the time of a slow oscillation.
+            # An elastic gear may swing on, by its speed times the period of a slow oscillation.
             swing = few / max(axis.now - since, axis.period) * _SWING
             held, place, quiet = axis.now, position, position
         elif held >= 0.0:
@@ -109,7 +109,7 @@ def find_breakaway(
 
 
 def _watch(axis: Axis, deviation: float) -> SensorWatch:
-    """The sensor's mean where the joint stands now, at no torque."""
+    """Return the watch of the sensor, with its mean at the present position and zero torque."""
     readings, end = [], axis.now + _QUIET
     while axis.now < end:
         readings.append(axis.read().reading)

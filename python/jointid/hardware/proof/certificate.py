@@ -1,4 +1,4 @@
-"""The bench certificate: what a first motion has found, kept beside the joint file, void when the bench changes."""
+"""Bench certificate: results of a first motion, in a file next to the joint file, void when the bench changes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from jointid.hardware.session.watchdog import Watchdog
 
 SCHEMA = 1
 VALID = timedelta(days=30)
-_CLOCK = timedelta(minutes=5)  # that this machine's clock may have been ahead when it was written
+_CLOCK = timedelta(minutes=5)  # by which this machine's clock may have been ahead
 
 _LIMITS = Record(
     {},
@@ -34,7 +34,7 @@ _LIMITS = Record(
     other=Plain(),
 )
 _TABLES = ("joint", "wiring", "drive", "found", "limits", "watchdog", "versions")
-_SAME = 1e-9  # of the watchdog's time, which is written with all its digits
+_SAME = 1e-9  # relative, of the watchdog's time, which is written with all its digits
 _SCHEMA = Record(
     {
         "schema": Number(low=SCHEMA, high=SCHEMA, whole=True),
@@ -121,7 +121,7 @@ class Certificate:
         )
 
     def save(self, path: str | Path) -> None:
-        """Write it as TOML, whole or not at all."""
+        """Write the certificate as TOML, completely or not at all."""
         lines = [
             "# Written by `jointid first-motion`; `jointid run` on a real joint asks for it. Do not edit it.",
             f"schema = {SCHEMA}",
@@ -166,13 +166,13 @@ class Certificate:
         *,
         watchdog: Watchdog | None = None,
     ) -> list[str]:
-        """Return why the certificate is not valid for a bench; empty if it is valid.
+        """Return the reasons why the certificate is not valid for a bench; empty if it is valid.
 
         Parameters
         ----------
         bench : Bench
         identity : mapping, optional
-            What the drive that is connected reports. Default: not looked at.
+            Identity that the connected drive reports. Default: not compared.
         now : datetime, optional
             Default: now.
         watchdog : Watchdog, optional
@@ -196,13 +196,13 @@ class Certificate:
         return found
 
     def notes(self, bench: Bench, identity: Mapping[str, Any] | None = None) -> list[str]:
-        """Return what a valid certificate does not cover, e.g. a changed offset or a drive without serial number.
+        """Return facts that a valid certificate does not cover, such as a changed offset or a missing serial number.
 
         Parameters
         ----------
         bench : Bench
         identity : mapping, optional
-            What the drive that is connected reports. Default: not looked at.
+            Identity that the connected drive reports. Default: not compared.
         """
         return notes(self.limits, bench, identity)
 
@@ -213,7 +213,7 @@ def certificate_path(joint_file: str | Path) -> Path:
 
 
 def joint_facts(bench: Bench) -> dict[str, Any]:
-    """Return what a joint file states that a first motion was held against."""
+    """Return the joint file's values that the first motion was compared with."""
     joint = bench.joint
     gain = joint.parameters.get("sensor_gain")
     value = None if gain is None else gain.value
@@ -229,7 +229,7 @@ def joint_facts(bench: Bench) -> dict[str, Any]:
 
 
 def identity_facts(identity: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what a drive reports about itself that is its own: its texts, node and serial number."""
+    """Return a drive's own part of its identity: its texts, node and serial number."""
     return {
         name: value
         for name, value in identity.items()
@@ -247,7 +247,7 @@ def _no_date(text: str, source: Path) -> InputError:
 
 
 def _slower(before: Mapping[str, Any], now: Watchdog) -> list[str]:
-    """In what a watchdog is another one than was certified; a shorter time is no objection."""
+    """Return how a watchdog differs from the certified one. A shorter time is no objection."""
     after = asdict(now)
     time = before.get("time")
     if isinstance(time, int | float) and now.time <= time * (1.0 + _SAME):
@@ -268,7 +268,7 @@ def _changes(
 
 
 def _plain(values: Mapping[str, Any]) -> dict[str, Any]:
-    """What TOML can hold: without None and numbers that are not finite; tables inside become their texts."""
+    """Return values for TOML: without None and numbers that are not finite, with nested tables as text."""
     kept: dict[str, Any] = {}
     for name, value in values.items():
         if isinstance(value, Mapping):

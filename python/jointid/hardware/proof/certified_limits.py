@@ -1,4 +1,4 @@
-"""What a certificate was given under: limits that may only become narrower, the joint's zero, the serial number."""
+"""Conditions of a certificate: limits that may only become narrower, the joint's zero, the serial number."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 from jointid.hardware.bench.bench import Bench, drive_type
 
 _LARGEST = ("torque", "velocity", "current")
-_SAME = 1e-9  # of a limit, which is written with all its digits
-_MOVED = 1e-6  # [rad] of the joint's zero: less is rounding
+_SAME = 1e-9  # relative, of a limit, which is written with all its digits
+_MOVED = 1e-6  # [rad], smallest change of the joint's zero; less is rounding
 NO_SERIAL = "serial_number"
-"""Code of `UNCHECKED`: any drive of this type and firmware passes for the one that was certified."""
+"""Code of `UNCHECKED`: another drive of this type and firmware cannot be distinguished from the certified one."""
 
 
 def limits_facts(bench: Bench) -> dict[str, Any]:
-    """Return the session's limits, the joint's largest current, and where the encoder's zero is.
+    """Return the session's limits, the joint's largest current, and the position of the encoder's zero.
 
     Parameters
     ----------
@@ -25,8 +25,8 @@ def limits_facts(bench: Bench) -> dict[str, Any]:
     Returns
     -------
     dict
-        "position" (two) [rad], "velocity" [rad/s], "torque" [N·m], "current" [A], "position_offset" [rad]; None
-        or infinite: there is none.
+        "position" (two) [rad], "velocity" [rad/s], "torque" [N·m], "current" [A], "position_offset" [rad]. None
+        or infinite means no limit.
     """
     limits = bench.limits
     options = drive_type(bench.drive_type).metadata(bench.drive)
@@ -40,12 +40,12 @@ def limits_facts(bench: Bench) -> dict[str, Any]:
 
 
 def widened(before: Mapping[str, Any], bench: Bench) -> list[str]:
-    """Return which limits are wider than they were; narrower ones are no objection.
+    """Return the limits that have become wider. Narrower limits are no objection.
 
     Parameters
     ----------
     before : mapping
-        The certificate's. A limit that is not there was infinite.
+        Limits of the certificate. A missing limit was infinite.
     bench : Bench
     """
     after, found = limits_facts(bench), []
@@ -67,7 +67,7 @@ def widened(before: Mapping[str, Any], bench: Bench) -> list[str]:
 def notes(
     before: Mapping[str, Any], bench: Bench, identity: Mapping[str, Any] | None = None
 ) -> list[str]:
-    """Return what the certificate cannot tell, and a user should look at; it holds nevertheless.
+    """Return what the certificate does not prove and a user should check. It stays valid nevertheless.
 
     Parameters
     ----------
@@ -75,11 +75,11 @@ def notes(
         The certificate's limits.
     bench : Bench
     identity : mapping, optional
-        What the drive that is connected reports. Default: not looked at.
+        Identity that the connected drive reports. Default: not compared.
     """
     found = []
     was, now = before.get("position_offset"), limits_facts(bench)["position_offset"]
-    # Homing changes it each time that the encoder loses its zero: no objection, or it would be void daily.
+    # Homing changes the offset each time that the encoder loses its zero. An objection would void it daily.
     if was is not None and now is not None and abs(now - was) > _MOVED:
         found.append(
             f"position_offset was {was:g} and is {now:g} rad: the position window has moved by {abs(now - was):.4g} "
@@ -93,7 +93,7 @@ def notes(
 
 
 def has_serial(identity: Mapping[str, Any]) -> bool:
-    """Whether a drive says which one of its type it is; some protocols have 0 for "none"."""
+    """Return whether a drive reports its serial number; some protocols use 0 for "none"."""
     return str(identity.get("serial") or "").strip() not in ("", "0")
 
 

@@ -1,4 +1,4 @@
-"""What is connected, and whether it may be moved: read only, the motor stays off."""
+"""Check of the connected bench: read only, the motor stays off."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from jointid.hardware.session.start_checks import problems_at_rest
 from jointid.hardware.session.watchdog import Watchdog
 from jointid.hardware.session.watchdog_check import WatchdogTravel, watchdog_problems
 
-_DRIFT = 5.0  # counts within the time that the joint is watched
+_DRIFT = 5.0  # counts, largest motion during the check
 _LITTLE_ABOVE = (
-    2.0  # times the joint's velocity: a drive's own speed limit beyond that protects nothing
+    2.0  # times the joint's velocity; a higher speed limit of the drive does not protect
 )
 
 
@@ -35,7 +35,7 @@ class BenchCheck:
     Attributes
     ----------
     address : str
-        Where the drive is.
+        Address of the drive.
     identity : mapping
         Identity that the drive reported.
     report : DriveReport or None
@@ -45,7 +45,7 @@ class BenchCheck:
     reading, noise : float
         Mean and standard deviation of the torque sensor's raw readings; NaN without a sensor.
     differences : tuple of str
-        Between the drive's settings and what the joint file needs.
+        Differences between the drive's settings and the needs of the joint file.
     problems : tuple of str
         Reasons not to move the joint.
     watchdog : WatchdogTravel or None
@@ -238,7 +238,7 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
 
 
 def _wide_speeds(report: DriveReport, velocity: float) -> Iterator[str]:
-    """Say which of the drive's own speed limits would let a joint run away that nobody commands any more."""
+    """Yield remarks on speed limits of the drive that are too high to stop an uncontrolled joint."""
     for each in report.settings:
         if (
             each.kind != "speed_limit"

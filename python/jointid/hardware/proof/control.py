@@ -1,4 +1,4 @@
-"""Small slow motions under control, each a little wider than the one before."""
+"""Small slow controlled motions, each a little larger than the one before."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.refusal import RefusedBenchError
 from jointid.hardware.session.velocity_estimator import VelocityEstimator
 
-_TIME = 1.5  # [s] there, and as long back
-_STIFFNESSES = (50.0, 80.0, 120.0)  # [rad/s] of the joint's inertia on the controller's spring
-_STUCK = 1.0 / 6.0  # of the amplitude: the error at which the spring moves a joint that sticks
+_TIME = 1.5  # [s] out, and the same time back
+_STIFFNESSES = (50.0, 80.0, 120.0)  # [rad/s], natural frequencies of the joint on the controller
+_STUCK = 1.0 / 6.0  # of the amplitude: error at which the controller moves a joint that sticks
 _DAMPING = 1.0
-_HELPED = 0.9  # share of the breakaway that is commanded ahead
-_MOST = 1.2  # of the breakaway
-_WITHIN = 0.6  # of the amplitude: the largest error, beside some counts
+_HELPED = 0.9  # share of the breakaway that is fed forward
+_MOST = 1.2  # largest torque over the breakaway
+_WITHIN = 0.6  # largest error over the amplitude, plus some counts
 _COUNTS = 20.0
 
 
@@ -25,27 +25,27 @@ def small_move(
     inertia: float,
     wind_up: float = 0.0,
 ) -> float:
-    """Move by an amplitude and back, under control; returns the largest tracking error [rad].
+    """Move by an amplitude and back under control. Return the largest tracking error [rad].
 
-    The torque is kept within 1.2 times the breakaway, so that a loop that goes the wrong way cannot go far.
+    The torque is at most 1.2 times the breakaway, so that an unstable loop stays slow.
 
     Parameters
     ----------
     axis : Axis
-        At rest, motor on.
+        Axis at rest, motor on.
     amplitude : float
-        With its sign [rad].
+        Amplitude with its sign [rad].
     breakaway : tuple of float
-        In the positive and in the negative direction [N·m].
+        Breakaway in the positive and the negative direction [N·m].
     inertia : float
-        [kg·m²]
+        Inertia at the output [kg·m²].
     wind_up : float
-        Angle by which the joint yields before it slides [rad]: the error may be so much larger. Default 0.
+        Elastic angle before the joint slides, which is added to the allowed error [rad]. Default 0.
 
     Raises
     ------
     RefusedBenchError
-        The error is too large, or a bound of the axis.
+        The error is too large, or a bound of the axis is exceeded.
     """
     sticking = (1.0 - _HELPED) * max(breakaway)
     natural = next(

@@ -1,28 +1,28 @@
-"""Watches for an encoder that stands under a torque that must move the joint."""
+"""Watch for an encoder that shows no motion under a torque that must move the joint."""
 
 from __future__ import annotations
 
 import math
 
-# That the joint must have moved by, of which the encoder showed one at most: 20 counts of a fine encoder, as many as
-# this angle has of a coarser one, 4 at least.
+# Motion that must be seen, while the encoder shows at most one count: 20 counts of a fine encoder; for a coarser one
+# the counts of this angle, at least 4.
 _COUNTS, _ANGLE, _FEWEST = 20.0, math.radians(0.01), 4.0
-_SEEN = 1.5  # counts: a count of jitter is none
-_COARSE = 3.0  # counts a cycle, above which a speed is known
+_SEEN = 1.5  # counts; one count may be jitter
+_COARSE = 3.0  # counts per cycle, above which a speed is known
 
 
 class EncoderWatch:
-    """Says whether a joint, by its breakaway and inertia, must have moved and was not seen to.
+    """Watch that compares the encoder with the motion expected from breakaway and inertia.
 
-    From the last change of the encoder on, the torque beyond the breakaway in its direction accelerates the
-    inertia; what is less slows it down.
+    From the last change of the encoder on, the torque above the breakaway accelerates the inertia. A smaller torque
+    slows it down.
 
     Parameters
     ----------
     breakaway : tuple of float
-        In the positive and in the negative direction [N·m].
+        Breakaway in the positive and the negative direction [N·m].
     inertia : float
-        [kg·m²]
+        Inertia at the output [kg·m²].
     resolution : float
         Output angle of an encoder count [rad].
     """
@@ -34,10 +34,10 @@ class EncoderWatch:
         self._direction = self._speed = self._way = 0.0
 
     def stands(self, time: float, position: float, torque: float) -> bool:
-        """Take one more sample, and the torque since the one before [s], [rad], [N·m]; whether the encoder hangs."""
+        """Take a sample [s], [rad] and the torque since the previous one [N·m]. Return whether the encoder hangs."""
         step, self._time = time - self._time, time
         moved = position - self._place
-        if not abs(moved) <= _SEEN * self._resolution:  # the first sample, too
+        if not abs(moved) <= _SEEN * self._resolution:  # also for the first sample
             fast = abs(moved) > _COARSE * self._resolution and step > 0.0
             self._speed = (abs(moved) - _COARSE * self._resolution) / step if fast else 0.0
             self._place, self._direction, self._way = position, math.copysign(1.0, moved), 0.0

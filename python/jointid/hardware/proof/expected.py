@@ -1,4 +1,4 @@
-"""What the joint file lets one expect of a first motion: breakaway and inertia; and what a difference means."""
+"""Breakaway and inertia that the joint file predicts for a first motion, and the reasons of a difference."""
 
 from __future__ import annotations
 
@@ -11,26 +11,26 @@ from jointid import _core
 from jointid.joint.joint import Joint
 
 LARGEST_RATIO = math.sqrt(3.0)
-"""Between measured and stated values: midway between one that is stated within 1.5 and a fault of 3."""
+"""Largest ratio of measured and stated values. A stated value may be wrong by 1.5; a fault is a factor of 3."""
 
-_CREEP, _NOTHING = 1e-6, 1e-3  # [rad/s]; a basis that is nothing there
-_APART = 2.0  # two explanations that foretell inertias closer than this cannot be told apart
+_CREEP, _NOTHING = 1e-6, 1e-3  # [rad/s]; smallest relevant basis at that speed
+_APART = 2.0  # smallest ratio of two predicted inertias that distinguishes two explanations
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Expected:
-    """What a joint file states, by its own constants.
+    """Values that a joint file states, by its own constants.
 
     Attributes
     ----------
     breakaway : float or None
-        Friction at a stand, the mean of both directions [N·m]; None: not stated.
+        Friction at rest, mean of both directions [N·m]; None if not stated.
     drive_inertia : float or None
-        At the output, by the joint file's gear ratio [kg·m²]; None: not stated.
+        Inertia of the drive at the output, by the joint file's gear ratio [kg·m²]; None if not stated.
     link_inertia : float or None
-        [kg·m²]; None: the joint file has no link.
+        Inertia of the link [kg·m²]; None if the joint file has no link.
     sensor : bool
-        There is a torque sensor.
+        Whether there is a torque sensor.
     sensor_sign : float
         Sign of the sensor's gain.
     """
@@ -43,18 +43,18 @@ class Expected:
 
     @property
     def inertia(self) -> float | None:
-        """Of drive and link together [kg·m²]; None where either is not stated."""
+        """Inertia of drive and link together [kg·m²]; None if one of them is not stated."""
         if self.drive_inertia is None or self.link_inertia is None:
             return None
         return self.drive_inertia + self.link_inertia
 
 
 def expected_of(joint: Joint) -> Expected:
-    """Return what a joint states."""
+    """Return the values that a joint states."""
     stated = _stated_breakaway(joint)
     identified = _value(joint, "inertia")
     drive = joint.reflected_inertia
-    if identified is not None:  # without a sensor it includes the link's
+    if identified is not None:  # without a sensor it includes the link
         drive = identified if joint.sensor else max(identified - joint.link_inertia, 0.0)
     gain = _value(joint, "sensor_gain")
     return Expected(
@@ -72,7 +72,7 @@ def _value(joint: Joint, name: str) -> float | None:
 
 
 def _stated_breakaway(joint: Joint) -> float | None:
-    """Friction at the lowest speed, the mean of both directions [N·m]; None where a value of it is not stated."""
+    """Return the friction at the lowest speed, mean of both directions [N·m]; None if a value of it is not stated."""
     model = joint.model.resolved
     speeds = np.array([_CREEP, -_CREEP])
     total = np.zeros(2)
@@ -80,7 +80,7 @@ def _stated_breakaway(joint: Joint) -> float | None:
         term = _core.term(key)
         if not term.friction:
             continue
-        # How friction fades with speed does not matter where there is none.
+        # The shape of a friction term does not matter if its coefficient is 0.
         shapes = np.array([_value(joint, shape) or 1.0 for shape in term.shapes])
         basis = _core.friction_basis(key, speeds, shapes)
         if np.abs(basis).max() < _NOTHING:
@@ -93,19 +93,19 @@ def _stated_breakaway(joint: Joint) -> float | None:
 
 
 def scale_fault(expected: Expected, friction: float, inertia: float) -> str | None:
-    """Return the code of what makes the measured friction differ from the stated one; None: nothing does.
+    """Return the code of the cause if measured and stated friction differ; None if they do not.
 
     Parameters
     ----------
     expected : Expected
     friction, inertia : float
-        Measured, by the joint file's constants [N·m], [kg·m²]; not a number: not measured.
+        Measured values, by the joint file's constants [N·m], [kg·m²]; NaN if not measured.
 
     Notes
     -----
-    A torque constant that is wrong by s divides both by s. A gear ratio that is wrong by n divides the friction
-    by n and leaves the rotor's inertia as it is, because torque and angle are both wrong; the link's it divides
-    by n².
+    A torque constant that is wrong by a factor s divides both by s. A gear ratio that is wrong by a factor n divides
+    the friction by n. It does not change the rotor's inertia, because torque and angle are both wrong. It divides the
+    link's inertia by n².
     """
     if expected.breakaway is None:
         return None

@@ -1,25 +1,25 @@
-"""The joint turned by hand, motor off: the only proof without torque that the encoder counts."""
+"""Turn of the joint by hand with the motor off: the only proof without torque that the encoder counts."""
 
 from __future__ import annotations
 
 from jointid.hardware.proof.axis import Axis
 from jointid.hardware.proof.refusal import RefusedBenchError
 
-_COUNTS = 50.0  # more than jitter and somebody who leans on the joint
-_QUIET = 1.0  # [s] without a count: the hand is off
+_COUNTS = 50.0  # more than jitter, and more than by leaning on the joint
+_QUIET = 1.0  # [s] without a count: the joint was released
 
 
 def await_hand_turn(axis: Axis, longest: float) -> float:
-    """Wait until somebody has turned the joint and left it; returns how far it was turned [rad].
+    """Wait until somebody has turned and released the joint. Return the angle of the turn [rad].
 
-    The bounds of the axis begin where the joint is left.
+    The bounds of the axis start at the position after the turn.
 
     Parameters
     ----------
     axis : Axis
-        Its motor is off.
+        Axis with its motor off.
     longest : float
-        Time to wait for the turn [s], and once more for the joint to be left.
+        Longest wait for the turn, and again for the release [s].
 
     Raises
     ------

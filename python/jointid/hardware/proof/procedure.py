@@ -1,4 +1,4 @@
-"""A first motion: what can be told of a bench with a fraction of a degree and little more than breakaway."""
+"""First motion: proof of a bench with a fraction of a degree and little more torque than breakaway."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ def first_motion(
 def _moved(
     bench: Bench, drive: Drive, callback: Callable[[str], object] | None, watchdog: bool
 ) -> FirstMotion:
-    """The steps, and the motor off on every way out."""
+    """Take the steps. The motor is off at the end in any case."""
     fall_silent = silence_of(drive) if watchdog else None
     steps = Steps(bench, drive, callback)
     reason, message = None, ""
@@ -133,7 +133,7 @@ def _moved(
 
 @contextmanager
 def _switched_off(drive: Drive) -> Iterator[list[DriveEnd]]:
-    """The motor off on every way out, and how that went."""
+    """Switch the motor off at the end in any case, and report its state."""
     ended: list[DriveEnd] = []
     try:
         yield ended

@@ -1,4 +1,4 @@
-"""Short pushes just above breakaway: inertia and the torque sensor's sign, within a fraction of a degree."""
+"""Short pushes just above breakaway: they show the inertia and the torque sensor's sign in a fraction of a degree."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from jointid.hardware.proof.refusal import RefusedBenchError
 
 Array = npt.NDArray[np.float64]
 
-STRENGTH = 1.15  # of the breakaway in its direction
-_LONGEST = 0.4  # [s] of a push
-_DEGREE = 5  # of the polynomial that stands for what the sensor reads at a position
-_UNKNOWN = 8  # rows at least, for four unknowns
-_FEWEST = 50  # samples in motion, to say anything
-_MANY = 40.0  # counts of a push: a fine encoder
-_INFORMED = 4000.0  # squared counts of all pushes together, which tell the inertia
+STRENGTH = 1.15  # torque of a push over the breakaway in its direction
+_LONGEST = 0.4  # [s], longest push
+_DEGREE = 5  # degree of the polynomial of the sensor's readings over position
+_UNKNOWN = 8  # fewest rows for four unknowns
+_FEWEST = 50  # fewest samples in motion for a result
+_MANY = 40.0  # counts of a push; more means a fine encoder
+_INFORMED = 4000.0  # squared counts of all pushes that are enough for the inertia
 
 
 @dataclass(frozen=True)
 class Push:
-    """One push, seen in its own direction, from its first cycle until the joint stands.
+    """One push, from its first cycle until the joint is at rest, positive in its own direction.
 
-    What is computed of it is kept: between two pushes the drive waits for our next command.
+    Computed values are cached, because the drive waits for the host's next command between two pushes.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Push:
     direction : float
         1 or -1.
     latency : float
-        From sending a command until it acts [s].
+        Delay from sending a command until it acts [s].
     resolution : float
         Output angle of an encoder count [rad].
     """
@@ -47,42 +47,42 @@ class Push:
 
     @property
     def width(self) -> float:
-        """Angle that it took [rad]."""
+        """Distance of the push [rad]."""
         return float(np.ptp(self.trace.position))
 
     @property
     def counts(self) -> float:
-        """Encoder counts that it took."""
+        """Distance of the push in encoder counts."""
         return self.width / self.resolution
 
     @property
     def fastest(self) -> float:
-        """Highest speed between two samples, less the count that rounding adds [rad/s]."""
+        """Highest speed between two samples, minus the count that rounding adds [rad/s]."""
         steps = np.abs(np.diff(self.trace.position)) - self.resolution
         return float((steps / np.diff(self.trace.time)).max(initial=0.0))
 
     @cached_property
     def times(self) -> Array:
-        """When the torque stepped, then when each sample was taken [s]."""
+        """Times of the torque's steps, and times of the samples [s]."""
         return np.concatenate(((self.trace.time[0] + self.latency,), self.trace.time[1:]))
 
     @cached_property
     def way(self) -> Array:
-        """Gone in the direction of the push [rad]."""
+        """Distance from the start in the direction of the push [rad]."""
         gone: Array = self.trace.position - self.trace.position[0]
         return self.direction * gone
 
     @cached_property
     def moving(self) -> int:
-        """The last sample in which the joint moved."""
+        """Index of the last sample in motion."""
         moved = np.flatnonzero(np.abs(np.diff(self.way)) > 0.5 * self.resolution)
         return int(moved[-1]) + 1 if len(moved) else 0
 
     @cached_property
     def balance(self) -> Array:
-        """The terms of the balance integrated twice, while the joint moved: inertia's, torque's, and the others'."""
+        """Twice integrated terms of the balance during motion: those of inertia and torque, and the others."""
         inner, times, way = slice(1, self.moving + 1), self.times, self.way
-        # The torque of a row acts from its own time plus the latency: a few steps, most rows have none.
+        # The torque of a row acts from its own time plus the latency. It changes in few rows.
         steps = np.diff(self.direction * self.trace.torque, prepend=0.0)
         some = np.flatnonzero(steps)
         late = times[inner, None] - (self.trace.time[some] + self.latency)
@@ -92,7 +92,7 @@ class Push:
         return np.stack((way[inner], twice, held, area[inner], self.direction * held), axis=1)
 
     def acceleration(self, motion: Motion) -> Array:
-        """Of the fitted motion, 0 at rest [rad/s²], in the joint's positive direction."""
+        """Return the acceleration of the fitted motion, positive in the joint's direction; 0 at rest [rad/s²]."""
         acting = np.concatenate(((0.0,), self.direction * self.trace.torque[:-1]))
         speed = np.gradient(self.way, self.trace.time) if len(self.way) > 2 else 0.0 * self.way
         against = motion.friction + self.direction * motion.load
@@ -103,12 +103,12 @@ class Push:
 
 
 def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
-    """Push until the joint has gone `reach` [rad], then let it come to rest under no torque.
+    """Push until the joint has moved by `reach` [rad], then let it come to rest at zero torque.
 
     Raises
     ------
     RefusedBenchError
-        A bound of the axis, or nothing moved.
+        A bound of the axis is exceeded, or nothing moved.
     """
     begin = len(axis.rows)
     place, end = axis.sample.position, axis.now + _LONGEST
@@ -126,16 +126,16 @@ def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
 
 @dataclass(frozen=True, slots=True)
 class Motion:
-    """What pushes say of the joint, by the joint file's constants.
+    """Values of the joint from pushes, by the joint file's constants.
 
     Attributes
     ----------
     inertia : float
-        [kg·m²]; not a number where it cannot be told.
+        Inertia [kg·m²]; NaN if it cannot be identified.
     friction, viscous : float
-        While it slides [N·m], [N·m·s/rad].
+        Sliding friction [N·m] and viscous coefficient [N·m·s/rad].
     load : float
-        That hinders the positive and helps the negative direction: gravity, above all [N·m].
+        Load that opposes the positive direction, mainly gravity [N·m].
     """
 
     inertia: float
@@ -145,7 +145,7 @@ class Motion:
 
 
 def informed(pushes: list[Push]) -> bool:
-    """Whether the encoder has counted enough to tell the inertia."""
+    """Return whether the encoder counts are enough to identify the inertia."""
     return sum(each.counts**2 for each in pushes) > _INFORMED
 
 
@@ -153,9 +153,9 @@ def motion_of(pushes: list[Push]) -> Motion:
     """Fit inertia and sliding friction to some pushes, by the torque balance integrated twice.
 
     inertia · x = ∬ torque - (friction ± load) · ∬ 1 - viscous · ∫ x, from the first cycle of each push, in which
-    the torque steps from 0, until the last count. Of a coarse encoder x is fitted by the torque: the other way
-    about, its counts would make the inertia too small. Its mean is taken away: nobody knows where within a count the
-    joint stood.
+    the torque steps from 0, until the last count. For a coarse encoder, x is fitted by the torque. The inverse fit
+    would make the inertia too small, because of the rounding to counts. The mean of x is subtracted then, because the
+    start position within a count is not known.
     """
     moved = [each for each in pushes if each.moving > 2]
     coarse = all(each.counts < _MANY for each in moved)
@@ -178,14 +178,14 @@ def motion_of(pushes: list[Push]) -> Motion:
 
 @dataclass(frozen=True, slots=True)
 class SensorResponse:
-    """How the torque sensor follows the joint's acceleration.
+    """Response of the torque sensor to the joint's acceleration.
 
     Attributes
     ----------
     slope : float
         Slope of the reading over the acceleration [reading·s²/rad].
     error : float
-        Its standard error.
+        Standard error of the slope.
     """
 
     slope: float
@@ -193,15 +193,15 @@ class SensorResponse:
 
     @property
     def significance(self) -> float:
-        """Slope over its standard error; 0 where there is none."""
+        """Slope over its standard error; 0 without one."""
         return self.slope / self.error if self.error > 0.0 and math.isfinite(self.error) else 0.0
 
 
 def sensor_response(pushes: list[Push], motion: Motion) -> SensorResponse:
-    """Regress the sensor's readings on the acceleration, beside whatever they are at each position.
+    """Regress the sensor's readings on the acceleration and on a polynomial of the position.
 
-    The acceleration is that of the fitted motion: the encoder's second difference would be mostly counts.
-    What a reading is at a position (ripple of the gear, weight of the link, zero) is a polynomial of it.
+    The acceleration is that of the fitted motion, because the second difference of the encoder is mostly noise of the
+    counts. The polynomial contains all that depends on position: ripple of the gear, weight of the link, zero.
     """
     if not math.isfinite(motion.inertia):
         return SensorResponse(0.0, math.inf)
@@ -212,7 +212,7 @@ def sensor_response(pushes: list[Push], motion: Motion) -> SensorResponse:
         return SensorResponse(0.0, math.inf)
     middle, width = position.mean(), max(np.ptp(position), pushes[0].resolution)
     shape = np.polynomial.chebyshev.chebvander(2.0 * (position - middle) / width, _DEGREE)
-    # By normal equations: seven well-scaled columns, and the drive waits for our next command.
+    # The normal equations are fast, and the drive waits for the next command; the 7 columns are well scaled.
     gram = shape.T @ shape
     own = acceleration - shape @ np.linalg.lstsq(gram, shape.T @ acceleration, rcond=1e-10)[0]
     left = reading - reading.mean()

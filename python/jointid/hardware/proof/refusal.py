@@ -1,4 +1,4 @@
-"""Why a bench is refused: a code for programs, a sentence for people."""
+"""Reason for the refusal of a bench: a code for programs, a sentence for people."""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ REASONS = {
     "too_long": "the motor was on for longer than a first motion may last",
     "user": "stopped by the user",
 }
-"""Codes of a refusal and what they mean; beside them the kinds of a drive's faults, such as "bus"."""
+"""Codes of a refusal and their meanings. The kinds of a drive's faults, such as "bus", are codes, too."""
 
 
 class RefusedBenchError(Exception):
-    """A bench is refused.
+    """The bench is refused.
 
     Parameters
     ----------
     reason : str
         One of `REASONS`, or the kind of a drive's fault.
     message : str
-        What was measured, with numbers, and what to look at.
+        Measured values, and parts of the bench to examine.
     """
 
     def __init__(self, reason: str, message: str) -> None:

@@ -1,4 +1,4 @@
-"""Result of a first motion: whether the bench is right, why not, and what nobody checked."""
+"""Result of a first motion: verdict, reason of a refusal, and unchecked items."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ UNCHECKED = {
     "emergency_stop": "the emergency stop, the brake and the end stops",
     "control": "a motion under control: the inertia is not known",
 }
-"""What a first motion can leave open, by code."""
+"""Items that a first motion can leave unchecked, by code."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,7 +62,7 @@ class FirstMotion:
     motor_off : bool or None
         Whether the drive confirmed that its motor is off.
     identity : mapping
-        What the drive reported about itself.
+        Identity that the drive reported.
     steps : tuple of str
         Tests and measurements, in order.
     """
@@ -90,7 +90,7 @@ class FirstMotion:
 
     @property
     def uncertified(self) -> str:
-        """Why a passed first motion has no certificate; empty if it has one."""
+        """Reason why a passed first motion has no certificate; empty if it has one."""
         if self.drive_watchdog is None:
             return "the drive declares no watchdog"
         if not self.drive_watchdog.read_back and self.watchdog is None:

@@ -1,4 +1,4 @@
-"""How far a first motion goes with the encoder in use: as little as its counts show."""
+"""Angles of a first motion for an encoder: as small as its counts allow."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from jointid.hardware.bench.bench import Bench
 from jointid.hardware.bench.first_motion_options import FirstMotionOptions
 from jointid.hardware.session.drive import Drive
 
-# Each is an angle, or so many counts where that is more.
+# Each one is an angle, or a number of counts if that is more.
 _SPAN, _SPAN_COUNTS = math.radians(0.4), 40.0
-_MOVE, _MOVE_COUNTS = math.radians(0.3), 20.0  # the largest under control
+_MOVE, _MOVE_COUNTS = math.radians(0.3), 20.0  # largest controlled motion
 _FEW, _MORE = 5, 10  # counts of a fine encoder
-_SEEN = math.radians(0.1)  # both of a coarse one are no more than this
+_SEEN = math.radians(0.1)  # upper limit of both for a coarse encoder
 _FEWEST = 2  # one count is jitter
 
 
@@ -25,15 +25,15 @@ class Sizes:
     Attributes
     ----------
     resolution : float
-        Resolution of an encoder count.
+        Output angle of an encoder count.
     few, more : float
-        That are a motion; that must follow while the torque is held.
+        Angle that counts as a motion; angle that must follow while the torque is held.
     span : float
-        Travel by default: the pushes are shares of it.
+        Default travel. The pushes are shares of it.
     travel : float
-        Farthest from the start.
+        Largest distance from the start.
     moves : tuple of float
-        Amplitudes under control.
+        Amplitudes of the controlled motions.
     """
 
     resolution: float
@@ -45,7 +45,7 @@ class Sizes:
 
     @property
     def least(self) -> float:
-        """Of a push: one count is jitter."""
+        """Smallest angle of a push; one count may be jitter."""
         return _FEWEST * self.resolution
 
     def __str__(self) -> str:
@@ -61,7 +61,7 @@ def resolution_of(bench: Bench, drive: Drive) -> float:
     Raises
     ------
     InputError
-        Neither the bench nor the drive has it.
+        Neither the bench nor the drive gives it.
     """
     resolution = bench.options.resolution or getattr(drive, "resolution", None)
     if resolution is None:
@@ -70,7 +70,7 @@ def resolution_of(bench: Bench, drive: Drive) -> float:
 
 
 def sizes_of(options: FirstMotionOptions, resolution: float) -> Sizes:
-    """Return the angles of a first motion for an encoder count [rad]; what the options state is kept.
+    """Return the angles of a first motion for an encoder count [rad]. Values in the options have priority.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The steps of a first motion, in order: each has its own stop."""
+"""Steps of a first motion, in order. Each has its own stop."""
 
 from __future__ import annotations
 
@@ -34,25 +34,25 @@ from jointid.hardware.session.drive_report import DriveReport
 from jointid.hardware.session.interruptions import Interruptions
 from jointid.hardware.session.start_checks import FULLEST_BUS, problems_at_rest
 
-# Times the stated breakaway. With 5, a torque constant wrong by 3 is still found where friction is stated within
-# 1.5; without a sensor to watch, nothing sees a joint that moves behind an encoder that hangs.
+# Multiple of the stated breakaway. With 5, a torque constant wrong by 3 is still found if the stated friction is
+# correct within 1.5. Without a sensor, nothing shows the motion of a joint with a frozen encoder.
 _CAP, _CAP_UNWATCHED = 5.0, 2.0
-_SLOWEST = 0.005  # [s] of a period; at twice that, benches that are right went too far
+_SLOWEST = 0.005  # [s], longest period; at twice that, correct benches moved too far
 _FEWEST, _MOST = 5, 25  # pairs of pushes
-_CLEAR = 6.0  # standard errors of a sign
-_REACH, _FARTHEST = 0.05, 0.3  # of the span, by the first push and by the last
-_WIDE = 0.5  # of the span: pushes that went so far are not made longer
-_QUICK = 0.3  # of the velocity allowed: nor those that were so fast
-_PUSHED = 0.6  # of the time allowed, after which no more pushes begin
-_FEW_PUSHES = 4  # pairs that only tell a wrong torque constant from a wrong gear ratio
-_DRIFT = 5.0  # counts: a joint that stands moves less
-_SURE, _SURE_WOUND = 1.02, 1.1  # of the breakaway; the joint slides
-_WOUND = 2e-4  # [rad] of yielding
-_FARTHER = 2.0  # measured over stated inertia, where nothing else is known
+_CLEAR = 6.0  # standard errors that make a sign certain
+_REACH, _FARTHEST = 0.05, 0.3  # of the span, for the first push and for the last
+_WIDE = 0.5  # of the span; longer pushes do not grow further
+_QUICK = 0.3  # of the allowed velocity; faster pushes do not grow further
+_PUSHED = 0.6  # of the allowed time, after which no more pushes begin
+_FEW_PUSHES = 4  # pairs that distinguish a wrong torque constant from a wrong gear ratio
+_DRIFT = 5.0  # counts; a joint at rest moves less
+_SURE, _SURE_WOUND = 1.02, 1.1  # of the breakaway, at which the joint slides
+_WOUND = 2e-4  # [rad], elastic angle
+_FARTHER = 2.0  # measured over stated inertia, if nothing more is known
 
 
 class Steps:
-    """The steps, and what they have found until one of them refuses.
+    """Steps of a first motion, with their results until one of them refuses the bench.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ class Steps:
     axis : Axis or None
         None until the drive is connected.
     lines : list of str
-        What was tried and measured.
+        Tests and measurements.
     found : dict
         Fields of the result.
     signs : dict
@@ -82,8 +82,8 @@ class Steps:
         if not self._options.compare_friction:
             self._expected = replace(self._expected, breakaway=None)
         self._watched = self._expected.sensor and self._options.watch_sensor
-        self._sure = (math.inf, math.inf)  # torques under which the joint slides [N·m]
-        self._deviation = math.nan  # of the torque sensor's readings at rest
+        self._sure = (math.inf, math.inf)  # torques at which the joint slides [N·m]
+        self._deviation = math.nan  # standard deviation of the torque sensor's readings at rest
         self.axis: Axis | None = None
         self.lines: list[str] = []
         self.found: dict[str, Any] = {
@@ -106,7 +106,7 @@ class Steps:
         Raises
         ------
         RefusedBenchError
-            The bench is wrong, or beyond a bound.
+            The bench is wrong, or a bound is exceeded.
         DriveFaultError
         """
         cap = self._cap()
@@ -116,16 +116,16 @@ class Steps:
         self._stands(axis, "motor on, no torque")
         found = [self._breakaway(axis, direction, cap) for direction in (1.0, -1.0)]
         if "encoder" in self.unchecked:
-            self.unchecked.remove("encoder")  # it has counted, both ways
+            self.unchecked.remove("encoder")  # it has counted in both directions
         self._judge_signs(found)
         breakaway = (found[0].torque, found[1].torque)
-        # A gear that winds up is taken for sliding a little before it does.
+        # An elastic gear seems to slide a little before it does.
         wound = max(each.wind_up for each in found) > _WOUND
         sure = tuple((_SURE_WOUND if wound else _SURE) * each for each in breakaway)
         self._sure = (sure[0], sure[1])
         if self._expected.inertia is not None:
             stated = self._expected.breakaway or math.inf
-            # A torque constant that is too large in the joint file makes both larger.
+            # If the joint file's torque constant is too large, it makes both larger.
             inertia = self._expected.inertia * max(1.0, 0.5 * sum(breakaway) / stated)
             axis.encoder_watch = EncoderWatch(self._sure, inertia, axis.resolution)
         self._judge_scales(axis, breakaway)
@@ -133,12 +133,12 @@ class Steps:
         self._under_control(axis, breakaway, motion, max(each.wind_up for each in found))
 
     def _cap(self) -> float:
-        """The torque at which the search for motion ends [N·m]."""
+        """Return the torque at which the search for motion ends [N·m]."""
         given, limit = self._options.largest_torque, self._bench.limits.torque
         if given is None:
             stated = self._expected.breakaway
             if stated is None and not self._watched:
-                # Up to the torque limit a joint whose encoder hangs would turn many times, and nothing sees it.
+                # With a frozen encoder, the torque limit would turn the joint many times, and nothing would show it.
                 raise RefusedBenchError(
                     "not_ready",
                     "if the encoder hangs, neither a known friction nor a torque sensor ends the search for motion: "
@@ -156,7 +156,7 @@ class Steps:
         return cap
 
     def _ready(self, interruptions: Interruptions) -> Axis:
-        """Connect; the axis, motor off."""
+        """Connect the drive. Return its axis with the motor off."""
         bench, drive = self._bench, self._drive
         period = bench.options.period
         self._refuse_period(period)
@@ -194,7 +194,7 @@ class Steps:
         return axis
 
     def _refuse_period(self, period: float) -> None:
-        """Refuse a period in which the bus has no room, or in which a push goes too far between two samples."""
+        """Refuse a period that overloads the bus, or in which a push goes too far between two samples."""
         load = self._drive.bus_load(period)
         if not load <= FULLEST_BUS:
             raise RefusedBenchError(
@@ -210,7 +210,7 @@ class Steps:
             )
 
     def _stands(self, axis: Axis, when: str) -> None:
-        """See that the joint stands."""
+        """Check that the joint is at rest."""
         start, end = axis.sample.position, axis.now + self._options.still_time
         readings = []
         while axis.now < end:
@@ -306,12 +306,12 @@ class Steps:
             for direction in (1.0, -1.0):
                 lost = axis.lost
                 found = push(axis, direction, STRENGTH * breakaway[direction < 0.0], reach)
-                if axis.lost == lost:  # else nobody knows how long the torque was on
+                if axis.lost == lost:  # otherwise the duration of the torque is not known
                     pushes.append(found)
         return pushes
 
     def _judge_sensor(self, axis: Axis, breakaway: tuple[float, float]) -> Motion:
-        """Push until inertia and sensor are clear; returns what they say of the joint."""
+        """Push until inertia and sensor are clear. Return the fitted motion."""
         expected, span = self._expected, axis.sizes.span
         reach = _REACH * span
         pushes: list[Push] = []
@@ -342,9 +342,9 @@ class Steps:
         return motion
 
     def _judge_inertia(self, inertia: float) -> None:
-        """Without a stated friction the inertia alone tells of the torque constant, and nothing of the gear ratio."""
+        """Judge the inertia. Without a stated friction it checks only the torque constant, not the gear ratio."""
         expected = self._expected
-        known = expected.breakaway is not None  # the friction has shown that the scales are right
+        known = expected.breakaway is not None  # then the friction has confirmed the scales
         if not known:
             self.unchecked.append("gear_ratio")
         stated = expected.inertia
@@ -363,7 +363,7 @@ class Steps:
                 "inertia",
                 f"{said}, and its friction is as stated: rotor_inertia or [link] is wrong",
             )
-        # A wrong gear ratio leaves the rotor's inertia as it is, and can only add to it: of the link's.
+        # A wrong gear ratio does not change the rotor's inertia. It can only increase the link's.
         raise RefusedBenchError(
             "torque_constant" if ratio < 1.0 else "torque_constant_or_gear_ratio",
             f"{said}: one of the constants is wrong, or the stated inertia",

@@ -1,4 +1,4 @@
-"""The drive's own watchdog, tried without a plug, by a silent host."""
+"""Test of the drive's own watchdog by a silent host, without pulling a plug."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from jointid.hardware.session.drive import Drive
 from jointid.hardware.session.silence import DriveSilence
 from jointid.hardware.session.watchdog import Watchdog
 
-_BEATEN = 1.0  # [s] at no torque: a drive that only begins to watch has begun by then
-_LATE = 3.0  # times the time allowed: the drive is asked after twice that, and the host may be late
+_BEATEN = 1.0  # [s] at zero torque, in which a drive starts its watchdog
+_LATE = 3.0  # times the allowed time; the drive is asked after twice that, and the host may be late
 
 
 def silence_of(drive: Drive) -> Callable[[], DriveSilence]:
@@ -22,7 +22,7 @@ def silence_of(drive: Drive) -> Callable[[], DriveSilence]:
     Raises
     ------
     InputError
-        It has none.
+        The drive has no such method.
     """
     method = getattr(drive, "fall_silent", None)
     if not callable(method):
@@ -40,21 +40,21 @@ def prove_watchdog(
     declared: Watchdog | None,
     callback: Callable[[str], object] | None = None,
 ) -> None:
-    """See that the drive does by itself what it declares (or switches its motor off), and enter when.
+    """Check that the drive stops its motor as declared (default: off), and keep the time.
 
-    The joint stands at no torque, so that a drive which goes on moves nothing. Afterwards the motor is switched
-    on once more, which takes the failure out of the drive: a session would not start with it.
+    The torque is zero, so that a drive that does not react moves nothing. Afterwards the motor is switched on once
+    more, which clears the failure in the drive. A session would not start with it.
 
     Parameters
     ----------
     steps : Steps
-        That have passed, the motor on; `found`, `unchecked` and `lines` are added to.
+        Passed steps, with the motor on. The test adds to `found`, `unchecked` and `lines`.
     fall_silent : callable
         Method `fall_silent` of the drive.
     declared : Watchdog or None
-        What the drive declares.
+        Watchdog that the drive declares.
     callback : callable, optional
-        Called with the line.
+        Called with the line of the report.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def prove_watchdog(
 
 
 def _judged(silence: DriveSilence, wanted: str) -> float:
-    """After how long the motor came into the wanted state [s]."""
+    """Return the time until the motor was in the required state [s]."""
     allowed = f"{1e3 * silence.allowed:g} ms without a sign of the host"
     if silence.state is None:
         raise RefusedBenchError("watchdog", f"the drive does not answer after {allowed}")

@@ -1,4 +1,4 @@
-"""How far a bench's joint goes before the drive's own watchdog ends its motion."""
+"""Travel of a bench's joint until the drive's own watchdog ends its motion."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ NO_WATCHDOG = "the drive declares no watchdog: it may go on when this program di
 
 
 def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTravel | None:
-    """Return how far a bench's joint goes when the host dies in its motion; None: its drive declares no watchdog.
+    """Return the travel of a bench's joint after its host dies; None if its drive declares no watchdog.
 
     Parameters
     ----------
     bench : Bench
     drive : Drive
-        Connected.
+        Connected drive.
     position : float
-        Where the joint stands [rad].
+        Position of the joint [rad].
     """
     watchdog = watchdog_of(drive)
     if watchdog is None:
@@ -36,6 +36,6 @@ def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTr
 
 
 def slow_on_bench(bench: Bench, drive: Drive, axis: Axis) -> list[str]:
-    """Return why a bench's joint must not be moved with the watchdog that its drive declares; empty: it may."""
+    """Return the reasons why the drive's watchdog forbids a motion of a bench's joint; empty if it does not."""
     travel = watchdog_of_bench(bench, drive, axis.sample.position)
     return [] if travel is None else [*watchdog_problems(travel, bench.options)]

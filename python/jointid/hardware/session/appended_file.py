@@ -47,7 +47,7 @@ class AppendedFile:
         os.fsync(self.descriptor)
 
     def close(self) -> None:
-        """Once."""
+        """Close the file; call it only once."""
         os.close(self.descriptor)
 
 

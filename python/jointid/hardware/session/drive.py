@@ -248,10 +248,10 @@ class Drive(Protocol):
         """
 
     def bus_load(self, period: float) -> float:
-        """Bus load, 0 to 1, with cycles of `period` [s]; 0 without a bus."""
+        """Return the bus load, 0 to 1, with cycles of `period` [s]; 0 without a bus."""
 
     def identity(self) -> dict[str, Any]:
-        """Identity of the drive for the recording: names and values in JSON types."""
+        """Return the identity of the drive for the recording: names and values in JSON types."""
 
 
 _METHODS = (
