@@ -1,4 +1,4 @@
-"""The command line: `jointid COMMAND`."""
+"""Command line: `jointid COMMAND`."""
 
 from jointid.cli.command_line import main
 

@@ -1,4 +1,4 @@
-"""An action in the words of a command: options instead of arguments, or what to write into the joint file."""
+"""Advice in the words of a command: options instead of arguments, or entries for the joint file."""
 
 from __future__ import annotations
 
@@ -34,23 +34,23 @@ _VERBS = {
 }
 _VERBS |= {"simulate": "simulate", "export": "export", "design_excitation": "design"}
 _UNKNOWN = {*PLACEHOLDERS.values(), *FILES.values(), *NUMBERS.values(), "VALUE", "NAME"}
-"""Words that stand for what only the user knows."""
+"""Words in place of values that only the user knows."""
 _WRITTEN = {"--report", "--save", "--model"}
-"""What another command that reads the same does not take over."""
+"""Options that are not copied to another command that reads the same files."""
 
 
 def words_of_action(action: Action, command: str, model: str = "", *, file: bool = False) -> str:
-    """What to do, in the words of a command; empty if the command line cannot do it.
+    """Return the advice in the words of a command; empty if the command line cannot follow it.
 
     Parameters
     ----------
     action : Action
     command : str
-        The command that gives the advice.
+        Command that gives the advice.
     model : str
-        The text of ``--model`` that the command has, to extend. Default: not known.
+        Text of the command's ``--model``, to extend it. Default: not known.
     file : bool
-        Whether the command has a joint file, in which a joint's fact then belongs. Default False.
+        Whether the command has a joint file. A fact of the joint then belongs there. Default False.
     """
     if action.kind != "call":
         return str(action)
@@ -67,17 +67,17 @@ def words_of_action(action: Action, command: str, model: str = "", *, file: bool
 def command_of_action(
     action: Action, command: str, typed: Sequence[str], model: str = "", *, file: bool = False
 ) -> str:
-    """The command that was typed, with what the action changes; empty where no command does it.
+    """Return the typed command with the changes of the action; empty if no command can do it.
 
     Parameters
     ----------
     action : Action
     command : str
-        The command that gives the advice.
+        Command that gives the advice.
     typed : sequence of str
-        Its words as they were typed, the command first.
+        Words as they were typed, the command first.
     model, file
-        As those of `words_of_action`.
+        As in `words_of_action`.
     """
     if action.kind != "call" or action.function == "Robot.from_urdf" or not typed:
         return ""
@@ -95,7 +95,7 @@ def command_of_action(
 
 
 def _for_another(typed: Sequence[str], command: str, verb: str) -> list[str]:
-    """The words of another command that reads the same; none where it reads nothing."""
+    """Return the words for another command that reads the same files; none if it reads nothing."""
     if verb not in ("identify", "compare") or command not in ("identify", "compare"):
         return []
     taken = set(OPTIONS[verb].values()) - _WRITTEN
@@ -109,20 +109,20 @@ def _for_another(typed: Sequence[str], command: str, verb: str) -> list[str]:
 
 
 def with_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
-    """Words of a command with options added, or put in the place of those with the same name and key."""
+    """Return the words of a command with options added. They replace those with the same name and key."""
     added = _pairs(options)
     kept = [words for words in _pairs(typed) if not any(_same(words, *each) for each in added)]
     return [word for pair in (*kept, *added) for word in pair if word is not None]
 
 
 def without_options(typed: Sequence[str], options: Sequence[str]) -> list[str]:
-    """Words of a command without some options and their values."""
+    """Return the words of a command without some options and their values."""
     kept = (pair for pair in _pairs(typed) if pair[0].partition("=")[0] not in options)
     return [word for pair in kept for word in pair if word is not None]
 
 
 def _pairs(words: Sequence[str]) -> list[tuple[str, str | None]]:
-    """Each option with its value, if it has one; any other word alone."""
+    """Return each option with its value, if it has one, and each other word alone."""
     found: list[tuple[str, str | None]] = []
     rest = list(words)
     while rest:
@@ -133,7 +133,7 @@ def _pairs(words: Sequence[str]) -> list[tuple[str, str | None]]:
 
 
 def _same(words: tuple[str, str | None], option: str, value: str | None) -> bool:
-    """Whether these words are the same option, of the same key where it has keys."""
+    """Return whether these words are the same option, with the same key if it has keys."""
     name, _, behind = words[0].partition("=")
     stated = behind or words[1] or ""
     if name != option:
@@ -144,7 +144,7 @@ def _same(words: tuple[str, str | None], option: str, value: str | None) -> bool
 def _parts(
     action: Action, command: str, model: str, *, file: bool
 ) -> tuple[str, list[str], list[tuple[str, str, Any]]]:
-    """The verb, the options, and for what has none entries of the joint file."""
+    """Return the verb, the options, and entries of the joint file for arguments without an option."""
     by_option = not file and all(option_of(command, name)[0] for name in action.arguments)
     if action.function == "Joint" and not (by_option and action.arguments.keys() <= _FACTS):
         return "", [], list(_joint_fields(action.arguments))
@@ -163,14 +163,14 @@ def _parts(
 
 
 def _of_reading(action: Action, function: str) -> Action:
-    """Which joint of a file is an option of its own: `--joint` is a joint file."""
+    """Return the action with `joint` as `--joints`, because `--joint` is a joint file."""
     names = {"joint": "joints"}
     arguments = {names.get(name, name): value for name, value in action.arguments.items()}
     return Action("call", arguments, action.text, function)
 
 
 def option_with_value(option: str, key: str, value: Any) -> str:
-    """An option as it is typed, e.g. `--column velocity=none`."""
+    """Return an option with its value as it is typed, e.g. `--column velocity=none`."""
     placeholder = {**FILES, **NUMBERS, **PLACEHOLDERS}.get(option, "VALUE")
     if option == "--windows" and isinstance(value, float):
         value = f"{behind_option(value)}s"
@@ -186,14 +186,14 @@ def option_with_value(option: str, key: str, value: Any) -> str:
 
 
 def model_text(current: str, changes: Mapping[str, Any]) -> str:
-    """The text of a model with some of its options changed; NAME where no name is known.
+    """Return the text of a model with some of its options changed; NAME if no name is known.
 
     Parameters
     ----------
     current : str
-        A model's text, or nothing.
+        Text of the model; may be empty.
     changes : mapping
-        Fields of a model; false, empty and None take an option away.
+        Fields of a model; false, empty and None remove an option.
     """
     name, *options = current.split(":")
     parts: dict[str, str] = {part.partition("=")[0]: part for part in options}
@@ -215,7 +215,7 @@ def _has_options(command: str, arguments: Mapping[str, Any]) -> bool:
 
 
 def _flat(arguments: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Arguments by name; what runs a search, field by field."""
+    """Yield the arguments by name. Options of a search are split into their fields."""
     for name, value in arguments.items():
         if name not in ("search", "ga") or isinstance(value, str):
             yield "method" if name == "search" else name, value
@@ -228,7 +228,7 @@ def _flat(arguments: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _changed(value: Any) -> dict[str, Any]:
-    """The fields of a value that differ from its defaults."""
+    """Return the fields of a value that differ from its defaults."""
     if isinstance(value, Mapping):
         return dict(value)
     if is_dataclass(value) and not isinstance(value, type):
@@ -242,7 +242,7 @@ def _changed(value: Any) -> dict[str, Any]:
 def _arguments(
     arguments: Mapping[str, Any], command: str, model: str
 ) -> tuple[list[str], list[tuple[str, str, Any]]]:
-    """Options, and for what has none entries of the joint file: table, key, value."""
+    """Return the options, and entries of the joint file (table, key, value) for arguments without an option."""
     options: list[str] = []
     joint_file: list[tuple[str, str, Any]] = []
     changes: dict[str, Any] = {}
@@ -292,7 +292,7 @@ def _read_model(text: str) -> dict[str, Any]:
 def _parameter(
     name: str, entry: Any, option: str, options: list[str], joint_file: list[tuple[str, str, Any]]
 ) -> None:
-    """--set for a value; the joint file for bounds, and where there is no --set."""
+    """Add --set for a value; use the joint file for bounds, or if the command has no --set."""
     if not isinstance(entry, Mapping):
         entry = {"value": entry}
     if option and entry.keys() == {"value"}:
@@ -309,7 +309,7 @@ def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]
             for parameter, entry in value.items():
                 pairs = entry.items() if isinstance(entry, Mapping) else [("value", entry)]
                 yield from ((f"parameters.{parameter}", key, each) for key, each in pairs)
-        elif isinstance(value, Mapping):  # a table of its own, e.g. link
+        elif isinstance(value, Mapping):  # a separate table, e.g. link
             yield from ((name, key, entry) for key, entry in value.items())
         else:
             key = {"name": "friction", "sensor": "present"}.get(name, name)
@@ -317,17 +317,15 @@ def _joint_fields(arguments: Mapping[str, Any]) -> Iterator[tuple[str, str, Any]
 
 
 def _of_file(name: str, value: Any) -> Any:
-    """The value of a field of a model that its text writes in words."""
+    """Return a field of a model as words, as in the model's text."""
     if name in ("asymmetric", "load_friction") and value in ("true", "false"):
         return value == "true"
     return () if name in ("ripple", "harmonics") and value == "none" else value
 
 
 def _in_joint_file(entries: list[tuple[str, str, Any]]) -> str:
-    """What to write into the joint file, table by table, and what to take out of it."""
-    if entries == [
-        ("sensor", "present", False)
-    ]:  # the table is there only to say that there is one
+    """Return the changes of the joint file as text: entries to write, table by table, and entries to remove."""
+    if entries == [("sensor", "present", False)]:  # an empty table only states that there is one
         return "delete [sensor] from the joint file"
     tables: dict[tuple[bool, str], list[str]] = {}
     for table, key, value in entries:

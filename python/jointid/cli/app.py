@@ -1,4 +1,4 @@
-"""The command `app`."""
+"""Command `app`."""
 
 from __future__ import annotations
 

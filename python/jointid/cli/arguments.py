@@ -1,4 +1,4 @@
-"""What the options of several commands have in common: their grammar, and their texts as values."""
+"""Options that several commands share: their grammar, and the conversion of their texts to values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _MOST_WINDOWS = 1_000_000_000
 
 
 class Once(argparse.Action):
-    """An option that keeps one value: given twice, it is refused instead of the first one's loss."""
+    """Option that keeps one value. It is refused if it occurs twice, so that no file is lost."""
 
     def __call__(
         self,
@@ -36,7 +36,7 @@ class Once(argparse.Action):
 
 
 def file_kinds() -> str:
-    """The endings of the files that can be read, for a sentence."""
+    """Return the endings of the files that can be read, for a sentence."""
     from jointid.recording.readers.registry import endings_text
 
     return endings_text()
@@ -45,7 +45,7 @@ def file_kinds() -> str:
 def several_recordings(
     command: CommandParser, *, nargs: str = "+", use: str = "read in the same way"
 ) -> None:
-    """Add the recordings and how they are read."""
+    """Add the recordings and the options for reading them."""
     recordings = command.add_argument(
         "recordings", type=Path, nargs=nargs, metavar="recording", help="recording"
     )
@@ -54,7 +54,7 @@ def several_recordings(
 
 
 def reading_arguments(command: argparse.ArgumentParser) -> None:
-    """Add how a recording is read."""
+    """Add the options for reading a recording."""
     for name, shown, explanation in (
         (
             "--column",
@@ -120,7 +120,7 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def pair(text: str) -> tuple[str, str]:
-    """Name and value of `name=value`."""
+    """Return name and value of `name=value`."""
     name, separator, value = text.partition("=")
     if not separator or not name or not value:
         raise argparse.ArgumentTypeError(f"'{text}' is not of the form NAME=VALUE")
@@ -128,7 +128,7 @@ def pair(text: str) -> tuple[str, str]:
 
 
 def by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
-    """Values by name.
+    """Return the values by name.
 
     Raises
     ------
@@ -144,13 +144,13 @@ def by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, str]:
 
 
 def number_or_text(text: str) -> Any:
-    """An int, else a float, else the text."""
+    """Return an int, a float, or the text itself."""
     number = number_in(text)
     return text if number is None else number
 
 
 def whole(text: str) -> int:
-    """A whole number."""
+    """Return a whole number."""
     value = number_or_text(text)
     if not isinstance(value, int):
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number")
@@ -158,7 +158,7 @@ def whole(text: str) -> int:
 
 
 def decimal(text: str) -> float:
-    """A number."""
+    """Return a number."""
     value = number_or_text(text)
     if isinstance(value, str):
         raise argparse.ArgumentTypeError(f"'{text}' is not a number")
@@ -166,7 +166,7 @@ def decimal(text: str) -> float:
 
 
 def windows(text: str) -> int | float | str:
-    """A number of windows, a duration such as 0.05s, or cumulative."""
+    """Return a number of windows, a duration such as 0.05s, or cumulative."""
     if text == "cumulative":
         return text
     value = (
@@ -184,7 +184,7 @@ def windows(text: str) -> int | float | str:
 
 
 def whole_seed(text: str) -> int:
-    """A seed."""
+    """Return a seed."""
     value = number_or_text(text)
     if not isinstance(value, int) or not 0 <= value < 2**64:
         raise argparse.ArgumentTypeError(f"'{text}' is not a whole number from 0 to 2^64 - 1")
@@ -192,7 +192,7 @@ def whole_seed(text: str) -> int:
 
 
 def method_argument(command: CommandParser) -> None:
-    """Add the method of the search."""
+    """Add the option for the method of the search."""
     command.add_argument(
         "--method",
         help="separable (default), ga or random; options of the genetic algorithm imply ga, which takes seven times "
@@ -201,12 +201,12 @@ def method_argument(command: CommandParser) -> None:
 
 
 def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
-    """The model of --model, with the own terms of --term added.
+    """Return the model of --model, with the own terms of --term.
 
     Raises
     ------
     InputError
-        A model or terms that cannot be used.
+        The model or the terms cannot be used.
     """
     from jointid.joint.model import Model
 
@@ -217,7 +217,7 @@ def with_terms(model: str | None, arguments: argparse.Namespace) -> Model:
 
 
 def models_by_joint(text: str) -> dict[str, str]:
-    """The models of a robot's joints, as in "elbow,wrist=auto:load_friction;shoulder=stribeck"; nothing of a plain one.
+    """Return a robot's models by joint from "elbow,wrist=auto:load_friction;shoulder=stribeck"; empty for one model.
 
     Raises
     ------
@@ -243,7 +243,7 @@ def models_by_joint(text: str) -> dict[str, str]:
 
 
 def text_by_joint(models: Mapping[str, str]) -> str:
-    """The text that `models_by_joint` reads; joints with the same model share it."""
+    """Return the text that `models_by_joint` reads. Joints with the same model share an entry."""
     groups: dict[str, list[str]] = {}
     for name, model in models.items():
         groups.setdefault(model, []).append(name)
@@ -251,12 +251,12 @@ def text_by_joint(models: Mapping[str, str]) -> str:
 
 
 def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, float]:
-    """Numbers by name.
+    """Return numbers by name.
 
     Raises
     ------
     InputError
-        Not a number, or a name is given twice.
+        A value is not a number, or a name is given twice.
     """
     numbers: dict[str, float] = {}
     for name, value in by_name(argument, pairs).items():
@@ -268,7 +268,7 @@ def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str
 
 
 def verbose_argument(command: CommandParser) -> None:
-    """Add `-v`, which prints all that an answer leaves out."""
+    """Add `-v`, which prints the complete report."""
     command.add_argument(
         "-v", "--verbose", action="store_true", help="print everything, not only the answer"
     )

@@ -1,4 +1,4 @@
-"""What a bench file puts in force: limits, motion, controller and drive, and which of it is only a default."""
+"""Settings of a bench file: limits, motion, controller and drive; each one is stated or a default."""
 
 from __future__ import annotations
 
@@ -31,16 +31,16 @@ _SESSION = ("period", "approach_velocity", "settle")
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """One value in force.
+    """One setting.
 
     Parameters
     ----------
     table, name : str
-        As in the joint file, e.g. "limits" and "velocity".
+        Names as in the joint file, e.g. "limits" and "velocity".
     value : object
-        A value of JSON types.
+        Value in JSON types.
     stated : bool
-        Whether the file has the key; else the value is a default.
+        Whether the file has the key. Otherwise the value is a default.
     """
 
     table: str
@@ -61,7 +61,7 @@ class Setting:
 
 @dataclass(frozen=True, slots=True)
 class InForce:
-    """All settings in force, and where the trajectory goes.
+    """All settings, and the range of the trajectory.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class InForce:
     fastest: float
 
     def text(self) -> str:
-        """Return a line for each, by table."""
+        """Return one line for each setting, by table."""
         lines = []
         for table in dict.fromkeys(each.table for each in self.settings):
             lines.append(f"{table}:")
@@ -104,13 +104,13 @@ class InForce:
 
 
 def in_force(joint_file: Path, bench: Bench) -> InForce:
-    """Return what a joint file puts in force.
+    """Return the settings of a joint file.
 
     Parameters
     ----------
     joint_file : Path
     bench : Bench
-        Read from it.
+        Bench that was read from this file.
 
     Raises
     ------
@@ -174,12 +174,12 @@ def _trajectory(stated: Mapping[str, Any], duration: float) -> Iterator[Setting]
 
 
 def _drive(options: Any, stated: Mapping[str, Any]) -> Iterator[Setting]:
-    """The options of a drive's type that are plain values; None where another key decides."""
+    """Yield the drive type's options that are plain values, without None, where another key decides."""
     if not is_dataclass(options):
         return
     for field in fields(options):
         value = getattr(options, field.name)
-        if value is None:  # a node that is chosen has a property of its own
+        if value is None:  # a selected node has its own property
             value = getattr(options, f"{field.name}_node", None)
         if isinstance(value, bool | int | float | str) and field.name != "bitrate":
             yield Setting("drive", field.name, value, field.name in stated)

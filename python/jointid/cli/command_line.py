@@ -1,6 +1,6 @@
-"""The command line: `jointid demo | new | identify | compare | simulate | sweep | design | run | report | info | …`.
+"""Command line: `jointid demo | new | identify | compare | simulate | sweep | design | run | report | info | …`.
 
-What `jointid --help` shows is here and in the table of commands; the rest is imported by the command that needs it.
+The content of `jointid --help` is here and in the table of commands. Each command imports the rest when it runs.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from jointid.cli.exit_codes import DONE
 from jointid.cli.parser import command_parser
 
-_SELDOM = 50_000  # objects between two collections of the youngest, 700 by default
+_SELDOM = 50_000  # objects between two garbage collections of the youngest; Python's default is 700
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -22,7 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     Parameters
     ----------
     argv : sequence of str, optional
-        Default: those of the process.
+        Arguments. Default: those of the process.
 
     Returns
     -------
@@ -36,7 +36,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         from jointid.cli.terminal import fit_streams
 
         fit_streams()
-    # What is imported stays: looking through it for garbage takes a tenth of a short command.
+    # Imported objects stay. To search them for garbage would take a tenth of a short command's time.
     gc.set_threshold(_SELDOM, *gc.get_threshold()[1:])
     atexit.register(gc.freeze)
     words = sys.argv[1:] if argv is None else argv
@@ -57,8 +57,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _show_every_character() -> None:
-    """A terminal or pipe without √ or ± shows a question mark; it is no reason to lose a result."""
+    """Show a question mark if the terminal or pipe has no √ or ±, so that a missing character loses no result."""
     for stream in (sys.stdout, sys.stderr):
-        reconfigure = getattr(stream, "reconfigure", None)  # a stream put in its place has none
+        reconfigure = getattr(stream, "reconfigure", None)  # a substituted stream has none
         if reconfigure is not None:
             reconfigure(errors="replace")

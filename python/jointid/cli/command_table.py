@@ -1,9 +1,9 @@
-"""The commands: what each is for, where its options are, and what runs it. Nothing of them is imported here."""
+"""Table of the commands: their help, the place of their options, and the function that runs them. It imports none."""
 
 from collections.abc import Callable
 from importlib import import_module
 
-# By command: its help, what adds its options, and what runs it.
+# For each command: its help, the function that adds its options, and the function that runs it.
 _TABLE = {
     "demo": (
         "identify a joint of an industrial robot from a recording that ships with jointid",
@@ -87,16 +87,16 @@ _TABLE = {
     ),
 }
 HELP = {command: row[0] for command, row in _TABLE.items()}
-"""What each command is for, in the order of `jointid --help`."""
+"""Purpose of each command, in the order of `jointid --help`."""
 
 
 def options_of(command: str) -> Callable[..., object]:
-    """Return what adds a command's options to its parser."""
+    """Return the function that adds a command's options to its parser."""
     return _imported(_TABLE[command][1])
 
 
 def runner_of(command: str) -> Callable[..., int | None]:
-    """Return what runs a command; it returns the exit code, None for 0."""
+    """Return the function that runs a command. It returns the exit code, or None for 0."""
     return _imported(_TABLE[command][2])
 
 

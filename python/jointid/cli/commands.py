@@ -1,4 +1,4 @@
-"""The commands `demo`, `identify`, `compare` and `report`; heavy imports stay inside the functions."""
+"""Commands `demo`, `identify`, `compare` and `report`; slow imports stay inside the functions."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def identify(arguments: argparse.Namespace) -> int:
         resume=arguments.resume,
     )
     with Progress(total=search.genetic.generations, enabled=not arguments.quiet) as progress:
-        if search.chosen_method != "separable":  # which has no generations
+        if search.chosen_method != "separable":  # it has no generations
             search = replace(search, callback=progress)
         estimate = identification.identify(
             recordings,
@@ -148,7 +148,7 @@ def identify(arguments: argparse.Namespace) -> int:
 def _with_checks(
     estimate: Estimate, checks: Mapping[str, SelfTest | Bootstrap | Causes | None]
 ) -> str:
-    """The estimate as JSON, with the results of what else was asked."""
+    """Return the estimate as JSON, with the results of the requested checks."""
     done = {name: check.document() for name, check in checks.items() if check is not None}
     if not done:
         return estimate.to_json()
@@ -235,7 +235,7 @@ def report(arguments: argparse.Namespace) -> None:
 
 
 def _saved(path: Path, joint: str | None) -> Result:
-    """The result that a file holds, of any kind; of several joints one where one is named."""
+    """Return the result in a file, of any kind. `joint` names one of several joints."""
     from jointid.base.result import Result
     from jointid.joints.reading import load_estimate
     from jointid.verbs.kept_kinds import class_of_kind
@@ -243,7 +243,7 @@ def _saved(path: Path, joint: str | None) -> Result:
     try:
         kind = class_of_kind(path)
     except InputError:
-        return load_estimate(path, joint)  # says what is wrong
+        return load_estimate(path, joint)  # its error names the problem
     if kind.__name__ in ("Estimate", "JointEstimates") and joint is not None:
         return load_estimate(path, joint)
     if joint is not None:
@@ -257,9 +257,9 @@ def _write(
     comparison: Comparison | None = None,
     recordings: Sequence[Recording] | None = None,
 ) -> str:
-    """Write what was asked for, of a comparison its own page; returns the code of a finding that refuses a joint file.
+    """Write the requested files. Return the code of a finding that prevents a joint file.
 
-    The next session reads a joint file and obeys it, so values that cannot be used stay out of it.
+    The next session uses a joint file without a check. Therefore values that cannot be used are not written to it.
     """
     if arguments.report is not None:
         from jointid.report.saving import save_report
@@ -283,7 +283,7 @@ def _write(
 
 
 def _say_written(refused: str, arguments: argparse.Namespace) -> None:
-    """Say after the report which files were written; JSON stands alone."""
+    """Print after the report which files were written; with --json print nothing."""
     saved = estimate_file(arguments)
     joint = arguments.save if not refused and arguments.save != saved else None
     if not arguments.json:
@@ -291,7 +291,7 @@ def _say_written(refused: str, arguments: argparse.Namespace) -> None:
 
 
 def _exit_code(refused: str, arguments: argparse.Namespace) -> int:
-    """Say after the report which joint file was not written, and why."""
+    """Print after the report which joint file was not written, and why."""
     if not refused:
         return 0
     print(

@@ -1,4 +1,4 @@
-"""The command `info`: what a recording holds, and what its signals show of themselves."""
+"""Command `info`: the signals of a recording, and properties that the data show."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from jointid.identification.warnings.inspection import Inspected
     from jointid.recording.recording import Recording
 
-_SLOW = 0.01  # of the peak speed
+_SLOW = 0.01  # share of the peak speed
 _IN_HEADLINE = ("name", "kind", "samples", "duration [s]", "sample period [s]", "gaps", "velocity")
-_LESS = (  # what -v brings
+_LESS = (  # shown with -v
     "fingerprint",
     "stamps scatter by [s]",
     "slower than 1 % of the peak speed [%]",
@@ -55,7 +55,7 @@ def info(arguments: argparse.Namespace) -> None:
 
 
 def _headline(recording: Recording) -> str:
-    """What it is, in a line."""
+    """Return a summary in one line."""
     velocity = "derived from the position" if recording.velocity_derived else "recorded"
     gaps = f", {len(recording.gaps)} gaps" if recording.gaps else ""
     return (
@@ -72,7 +72,7 @@ def _signal_line(signal: tuple[str, Mapping[str, Any]]) -> str:
 
 
 def _unrecognised(arguments: argparse.Namespace) -> str:
-    """The columns that were not read and whose headers name no signal, the first twelve of them."""
+    """Return the first twelve columns that were not read and have an unknown header."""
     from jointid.recording.headers import understood
     from jointid.recording.readers.loading import table_of
     from jointid.recording.readers.what_is_read import columns_read
@@ -141,7 +141,7 @@ def _contents(recording: Recording, wording: Wording) -> dict[str, Any]:
 
 
 def _pendulum(stated: Mapping[str, Any]) -> dict[str, str]:
-    """The joint file of a load on an arm, as BAM's logs state it: it hangs where the position is 0."""
+    """Return a joint file's [link] for a load on an arm, from BAM's logs: it hangs down at position 0."""
     mass, arm, length = (stated.get(name) for name in ("mass", "arm_mass", "length"))
     known = [each for each in (mass, arm or 0.0, length) if isinstance(each, int | float)]
     if len(known) < 3 or min(known) < 0.0 or known[0] + known[1] == 0.0:
@@ -187,7 +187,7 @@ def _facts(recording: Recording, seen: Inspected) -> dict[str, Any]:
 
 
 def _step(seen: Inspected, signal: str) -> dict[str, float]:
-    """The smallest change of a signal from one row to the next: its resolution, where that is coarse."""
+    """Return the smallest change of a signal between two rows: its resolution, if that is coarse."""
     if signal not in seen.channels:
         return {}
     smallest = seen.counts(signal).smallest
@@ -195,7 +195,7 @@ def _step(seen: Inspected, signal: str) -> dict[str, float]:
 
 
 def _measured(recording: Recording, seen: Inspected) -> dict[str, Any]:
-    """What nobody stated: how the stamps scatter, how long the joint rests, how velocity and position agree."""
+    """Return properties from the data: jitter of the time stamps, share at rest, agreement of velocity and position."""
     found: dict[str, Any] = {"stamps scatter by [s]": float(f"{seen.found.timing_errors[0]:.3g}")}
     if (speed := seen.found.peak_speed) > 0.0:
         slow = abs(recording.velocity) < _SLOW * speed

@@ -1,4 +1,4 @@
-"""The demonstration: joint 1 of a KUKA KR300, from its log, which ships with the package."""
+"""Demonstration: joint 1 of a KUKA KR300, from a log that ships with the package."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ TERMS = {"coriolis": "known", "pose": "inertia"}
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Demonstration:
-    """What `jointid demo` identifies.
+    """Data of `jointid demo`.
 
     Attributes
     ----------
     recording : Recording
         Joint 1 of a KUKA KR300, with the Coriolis torque and the inertia over the pose of its authors' model.
     joint : Joint
-        What is known of it, and the model.
+        Known values of the joint, and its model.
     published : mapping of str to float
         Values by the authors of the log (SI).
 
@@ -42,7 +42,7 @@ class Demonstration:
 
 
 def data_folder() -> Path:
-    """Folder with the demonstration's recordings and joint files."""
+    """Return the folder with the demonstration's recordings and joint files."""
     installed = Path(__file__).resolve().parents[1] / "data"
     if installed.is_dir():
         return installed
@@ -68,11 +68,11 @@ def demo() -> Demonstration:
 
 
 def log_file() -> Path:
-    """The demonstration's log."""
+    """Return the path of the demonstration's log."""
     return data_folder() / "kr300_joint1.csv.gz"
 
 
 def known_joint() -> Joint:
-    """What is known of the demonstration's joint, and its model."""
+    """Return the known values of the demonstration's joint, and its model."""
     joint = Joint.load(data_folder() / "kr300_joint1.toml")
     return joint.replace(model=joint.model.replace(terms=TERMS))

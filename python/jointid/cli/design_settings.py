@@ -1,4 +1,4 @@
-"""What the options of `design` and its joint file say: limits, controller, what is believed."""
+"""Settings of `design` from its options and joint file: limits, controller, assumed parameters."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _LIMITS = ("position", "velocity", "acceleration", "torque", "sensor_range")
 
 
 def joint_and_bench(path: Path) -> tuple[Joint, Bench | None]:
-    """The joint of a file, and its bench if the file has one, whatever motion that names."""
+    """Return the joint of a file, and its bench if the file has one. The bench's motion is not read."""
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.bench.bench_file import bench_fields
     from jointid.joint.joint_file import read_document
@@ -39,7 +39,7 @@ def joint_and_bench(path: Path) -> tuple[Joint, Bench | None]:
 
 
 def advised_motion(estimate: Estimate) -> dict[str, Any]:
-    """What the estimate's findings advise to record: limits and duration, without what only the user knows."""
+    """Return the limits and the duration that the estimate's findings advise, except those that only a user knows."""
     for found in estimate.findings:
         for action in found.advice:
             if action.designs:
@@ -55,7 +55,7 @@ def limits_of(
     bench: Bench | None,
     advised: Mapping[str, Any] | None = None,
 ) -> MotionLimits:
-    """The limits of the options; where there is none, the session's, the joint's, or those advised."""
+    """Return the limits of the options; by default the session's, the joint's, or the advised ones."""
     given: dict[str, Any] = {} if bench is not None else dict(advised or {})
     for name in _LIMITS:
         text = getattr(arguments, name)
@@ -78,7 +78,7 @@ def limits_of(
 
 
 def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
-    """Refuse a limit beyond the one at which the session of the joint file stops."""
+    """Refuse a limit beyond the joint file's session limit, because the session would stop there."""
     low, high = session.position
     if limits.position[0] < low or limits.position[1] > high:
         raise InputError(
@@ -95,7 +95,7 @@ def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
 
 
 def as_option(error: InputError) -> InputError:
-    """An error about a limit: its place is the option, which says it already."""
+    """Return an error about a limit without its place, because the option names it already."""
     if error.place != "limits":
         return error
     return InputError(error.reason, argument=error.argument, value=error.value, remedy=error.remedy)
@@ -104,7 +104,7 @@ def as_option(error: InputError) -> InputError:
 def controller_for(
     arguments: argparse.Namespace, joint: Joint, bench: Bench | None
 ) -> Controller | None:
-    """The controller of the options, or of the session; None: the default one."""
+    """Return the controller of the options or of the session; None for the default one."""
     from jointid.simulation.arguments import law_name
     from jointid.simulation.scenario import believing
 
@@ -133,12 +133,12 @@ def controller_for(
 def sensors_for(
     pairs: Sequence[tuple[str, str]], limits: MotionLimits, joint: Joint, bench: Bench | None
 ) -> Sensors | None:
-    """The sensors of the options, beside the session's encoder and what else is assumed; None: the default ones."""
+    """Return the sensors of the options, with the session's encoder and default values; None for the default ones."""
     from jointid.excitation.balance_noise import assumed_sensors
 
-    # What a drive's type calls otherwise is not known here, and stays the default.
+    # Properties with other names in a drive's type are not known here. They keep their defaults.
     counts = getattr(None if bench is None else bench.drive, "counts_per_turn", None)
-    assert limits.torque is not None  # MotionLimits.of sees to it
+    assert limits.torque is not None  # MotionLimits.of checks this
     own = assumed_sensors(joint, limits.torque)
     if bench is not None and counts is not None:
         own = own.replace(
@@ -156,7 +156,7 @@ def sensors_for(
 def controller_after(
     arguments: argparse.Namespace, estimated: Joint, bench: Bench | None
 ) -> Controller | None:
-    """The same, which believes an estimate: what the session's own assumes was believed before."""
+    """Return the same controller with the values of an estimate. A session's own assumptions are older."""
     from jointid.simulation.scenario import believing
 
     found = controller_for(arguments, estimated, bench)
@@ -171,7 +171,7 @@ def controller_after(
 def sensors_after(
     pairs: Sequence[tuple[str, str]], sensors: Sensors | None, estimate: Estimate
 ) -> Sensors | None:
-    """The same sensors, with the noise that an estimate's residuals show where no option says it."""
+    """Return the same sensors, with the noise of an estimate's residuals if no option states it."""
     from jointid.excitation.posterior import sensors_of
 
     seen = sensors_of(estimate)
@@ -181,7 +181,7 @@ def sensors_after(
 
 
 def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]] | None:
-    """Where parameters may lie, by name."""
+    """Return the ranges of parameters by name."""
     found = {}
     for name, text in by_name("prior", pairs).items():
         low, high = _numbers(f"prior.{name}", text, 2, "two numbers LOW,HIGH")
@@ -190,14 +190,14 @@ def prior_of(pairs: Sequence[tuple[str, str]]) -> dict[str, tuple[float, float]]
 
 
 def _unit_of(name: str, joint: Joint) -> str:
-    """Of a limit that is no angle, and why; empty where it may be one."""
+    """Return the unit of a limit that is no angle, with the reason; empty if it may be an angle."""
     if joint.kind == "prismatic":
         return f"{_SLIDING.get(name, 'N')}: the joint is prismatic"
     return "" if name in _SLIDING else "N·m"
 
 
 def _numbers(argument: str, text: str, count: int, unit: str) -> tuple[float, ...]:
-    """Numbers with commas between them, or angles such as 60deg where no unit is said."""
+    """Return numbers separated by commas; angles such as 60deg are allowed if `unit` is empty."""
     parts = [part.strip() for part in text.split(",")]
     if unit and any(part.endswith("deg") for part in parts):
         raise InputError(

@@ -1,4 +1,4 @@
-"""The command `design`: the motion that identifies a joint best within limits."""
+"""Command `design`: the motion that identifies a joint best within limits."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def add_design(design: CommandParser) -> None:
 
 
 def _believed(design: argparse.ArgumentParser) -> None:
-    """Add what is known of the joint, its controller and its sensors."""
+    """Add the options for known values of the joint, its controller and its sensors."""
     design.add_argument(
         "--prior",
         action="append",
@@ -129,7 +129,7 @@ def _believed(design: argparse.ArgumentParser) -> None:
 
 
 def _sought(design: argparse.ArgumentParser) -> None:
-    """Add what is sought, and how."""
+    """Add the options for the goal of the search and its method."""
     design.add_argument(
         "--parameter",
         action="append",
@@ -157,7 +157,7 @@ def _sought(design: argparse.ArgumentParser) -> None:
 
 
 def design(arguments: argparse.Namespace) -> int:
-    """Design a motion, and write it."""
+    """Design a motion and write it."""
     from jointid.cli.design_settings import as_option
 
     _check_outputs(arguments)
@@ -169,7 +169,7 @@ def design(arguments: argparse.Namespace) -> int:
 
 
 def _designed(arguments: argparse.Namespace) -> Design:
-    """The design of a command line."""
+    """Return the design of a command line."""
     from jointid.cli.design_settings import (
         advised_motion,
         controller_after,
@@ -230,7 +230,7 @@ def _designed(arguments: argparse.Namespace) -> Design:
 
 
 def _estimate(arguments: argparse.Namespace) -> Estimate | None:
-    """The estimate of --after, of several joints that of --after-joint."""
+    """Return the estimate of --after; of several joints, that of --after-joint."""
     from jointid.joints.reading import load_estimate
 
     joint = arguments.after_joint
@@ -267,7 +267,7 @@ def _estimate(arguments: argparse.Namespace) -> Estimate | None:
 
 
 def _say(found: Design, arguments: argparse.Namespace) -> int:
-    """Write what was asked for, and print the design; a motion that keeps no limits is not written."""
+    """Write the requested files and print the design. A motion that violates a limit is not written."""
     from jointid.cli.exit_codes import BAD_INPUT
     from jointid.excitation.design_fields import COMPLETE
 

@@ -1,4 +1,4 @@
-"""The command `emulate`: an emulated bench on a bus, for a session in another program."""
+"""Command `emulate`: an emulated bench on a bus, for a session in another program."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ def emulate(arguments: argparse.Namespace) -> int:
 
 
 def _check_reached(interface: str, joint: Path) -> None:
-    """Refuse a bus on which nobody would ever talk to the emulated drive."""
+    """Refuse a bus that no other program can reach."""
     if interface == "virtual":
         raise InputError(
             "python-can's virtual bus ends with this process, so no session could reach the drive",

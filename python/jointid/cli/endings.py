@@ -1,4 +1,4 @@
-"""How `run` says that it has ended: what became of the motor and of the recording, in words or as JSON."""
+"""Messages at the end of `run`: state of the motor and of the recording, in words or as JSON."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ def motor_and_recording(motor_off: bool | None, output: Path | None) -> str:
     motor_off : bool or None
         As in a `Stop`.
     output : Path or None
-        The folder of the recordings.
+        Folder of the recordings.
     """
     return f"{_MOTOR[motor_off]}; {_recorded(output)}"
 
 
 def refused(command: str, reason: str, message: str, *, as_json: bool) -> None:
-    """Say that a session was not started.
+    """Print that a session was not started.
 
     Parameters
     ----------
     command : str
-        "run", …
+        Name of the command: "run", …
     reason : str
-        A name for programs, e.g. "certificate".
+        Reason as a name for programs, e.g. "certificate".
     message : str
     as_json : bool
-        Print it for programs, too.
+        Whether to also print JSON.
     """
     print(f"jointid {command}: {message}; {_NEVER_ON}", file=sys.stderr)
     if as_json:
@@ -53,17 +53,17 @@ def refused(command: str, reason: str, message: str, *, as_json: bool) -> None:
 def stopped(
     reason: str, message: str, motor_off: bool | None, output: Path | None, *, as_json: bool
 ) -> None:
-    """Say that a session was stopped: why, and what became of motor and recording.
+    """Print that a session was stopped: the reason, and the state of motor and recording.
 
     Parameters
     ----------
     reason : str
-        The limit's name, as in a `Stop`.
+        Name of the limit, as in a `Stop`.
     message : str
     motor_off : bool or None
     output : Path or None
     as_json : bool
-        Print it for programs, too.
+        Whether to also print JSON.
     """
     print(f"jointid run: {message}", file=sys.stderr)
     print(motor_and_recording(motor_off, output), file=sys.stderr)
@@ -72,7 +72,7 @@ def stopped(
 
 
 def document(result: Commissioning, output: Path | None) -> dict[str, Any]:
-    """Return the outcome of a run that was not stopped, of JSON's types."""
+    """Return the outcome of a run that was not stopped, in JSON types."""
     recordings = result.recordings()
     found = result.to_dict()
     blocked = result.blocked
@@ -95,14 +95,14 @@ def document(result: Commissioning, output: Path | None) -> dict[str, Any]:
 
 
 def motor_off(result: Commissioning) -> bool | None:
-    """Return what the drive said of its motor after the last run."""
+    """Return the drive's report on its motor after the last run."""
     *_, last = result.recordings().values()
     said: bool | None = last.metadata.get("motor_off")
     return said
 
 
 def motor_off_before(error: BaseException) -> tuple[bool, bool | None]:
-    """Return whether runs were recorded before an exception of `commission`, and what the drive said after the last.
+    """Return whether an exception of `commission` came after recorded runs, and the motor's state after the last one.
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def _recorded(output: Path | None) -> str:
 
 
 def _files(output: Path | None) -> list[str]:
-    """The recordings of a folder, the oldest first."""
+    """Return the recordings of a folder, oldest first."""
     if output is None or not output.is_dir():
         return []
     found = sorted(output.glob("*.csv"), key=lambda path: path.stat().st_mtime_ns)

@@ -2,8 +2,8 @@
 
 DONE = 0
 BAD_INPUT = 2
-"""A command line, or a file that it names, cannot be used."""
+"""The command line, or a file that it names, cannot be used."""
 WORSE = 4
-"""The verdict is worse than `--require` asks for."""
+"""The verdict is worse than `--require` accepts."""
 BUG = 70
 """An error in jointid itself."""

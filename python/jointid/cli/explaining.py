@@ -1,4 +1,4 @@
-"""The command `explain`: what a finding means, and all that an estimate's finding says."""
+"""Command `explain`: the meaning of a finding, and the details of an estimate's finding."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def add_explain(explain: CommandParser) -> None:
 
 
 def explain(arguments: argparse.Namespace) -> None:
-    """Print what a finding means and what to do; of an estimate, all that its finding says."""
+    """Print the meaning of a finding and its advice. With an estimate, print the finding's details."""
     types, code = _types(), arguments.code
     if code is None:
         for subject, codes in types.items():
@@ -50,7 +50,7 @@ def explain(arguments: argparse.Namespace) -> None:
         subject, found = _findings_of(arguments.estimate)
         subjects = [subject]
         print(*_explained(code, found, arguments.estimate), "", sep="\n")
-        if code not in types[subject]:  # causes of a residual are those of a joint
+        if code not in types[subject]:  # causes of a residual exist only for a joint
             subjects = [_JOINT]
     for subject in subjects:
         if code in types[subject]:
@@ -60,7 +60,7 @@ def explain(arguments: argparse.Namespace) -> None:
 
 
 def _types() -> dict[str, Types]:
-    """All types of findings, by what they are found of."""
+    """Return all types of findings, by their subject."""
     from jointid.identification.warnings.registry import finding_types
     from jointid.robot.result.finding_types import TYPES as OF_ROBOTS
     from jointid.servo.finding_types import TYPES as OF_SERVOS
@@ -69,7 +69,7 @@ def _types() -> dict[str, Types]:
 
 
 def _explained(code: str, found: Mapping[str, Sequence[Finding]], path: Path) -> list[str]:
-    """What the findings with this code say in a saved estimate."""
+    """Return the text of the findings with this code in a saved estimate."""
     from jointid.cli.wording import Wording
     from jointid.estimate.answers import explained
 
@@ -88,7 +88,7 @@ def _explained(code: str, found: Mapping[str, Sequence[Finding]], path: Path) ->
 
 
 def _findings_of(path: Path) -> tuple[str, dict[str, Sequence[Finding]]]:
-    """What a saved estimate is of, and its findings by joint, where it is of several."""
+    """Return the subject of a saved estimate, and its findings, by joint if it has several."""
     from jointid.base.schema import read_text
     from jointid.joints.document import KIND as JOINTS
     from jointid.joints.reading import load_estimate
@@ -99,7 +99,7 @@ def _findings_of(path: Path) -> tuple[str, dict[str, Sequence[Finding]]]:
 
     try:
         document = json.loads(read_text(path))
-    except (ValueError, RecursionError):  # another reader says what is wrong
+    except (ValueError, RecursionError):  # another reader reports the problem
         document = None
     kind = document.get("kind") if isinstance(document, dict) else None
     if kind == ROBOT:

@@ -1,4 +1,4 @@
-"""The command `export`."""
+"""Command `export`."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def export(arguments: argparse.Namespace) -> None:
         value = Joint.load(source)
     findings = () if isinstance(value, Joint) else value.findings
     blocking = [each for each in findings if each.severity == "blocking"]
-    if blocking:  # as identify refuses to write a joint file: a controller would obey it
+    if blocking:  # identify does not write such a joint file either: a controller would use it
         raise InputError(
             f"the finding {blocking[0].code} is blocking: its values cannot be used",
             place=str(source),

@@ -1,4 +1,4 @@
-"""A correction of a robot's facts as one plain act: which line of which file becomes what."""
+"""Correction of a robot's facts as one action: the lines of a file and their new text."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ _HEADER = r"\s*\["
 
 
 def words_of_facts(action: Action, file: str) -> str:
-    """What to write into the file of `--facts`; of a call that has no file yet, which file to write.
+    """Return the change in the file of `--facts`; if the command has no such file, the file to write.
 
     Parameters
     ----------
     action : Action
-        A call of `Robot.from_urdf`.
+        Call of `Robot.from_urdf`.
     file : str
-        The file of `--facts`. Default: the call has none.
+        File of `--facts`. Default: the command has none.
     """
     lines = _lines_of(file)
     acts = [
@@ -53,12 +53,12 @@ def _lines_of(file: str) -> list[str]:
         return []
     try:
         return Path(file).read_text(encoding="utf-8-sig").splitlines()
-    except (OSError, UnicodeDecodeError):  # it was readable a moment ago
+    except (OSError, UnicodeDecodeError):  # the file was readable a moment ago
         return []
 
 
 def _entries(name: str, fact: Any, lines: list[str]) -> Iterator[tuple[str, str]]:
-    """A key with its value as TOML has it; zeros in degrees where the file has them so."""
+    """Yield each key with its value in TOML; zero offsets in degrees if the file has them in degrees."""
     if name == "zero_offsets" and _span(lines, "zero_offsets_deg"):
         yield "zero_offsets_deg", in_joint_file([round(degrees(each), 4) for each in fact])
     elif isinstance(fact, Mapping):
@@ -90,7 +90,7 @@ def _act(file: str, lines: list[str], key: str, value: str) -> str:
 
 
 def _span(lines: list[str], key: str) -> range | None:
-    """The lines of a key that stands before all tables."""
+    """Return the lines of a key before all tables."""
     for number, line in enumerate(lines):
         if re.match(_HEADER, line):
             return None
@@ -103,13 +103,13 @@ def _span(lines: list[str], key: str) -> range | None:
 
 
 def _open(text: str) -> bool:
-    """Whether a list goes on in the next line."""
+    """Return whether a list continues in the next line."""
     bare = re.sub(r"#.*", "", text)
     return bare.count("[") > bare.count("]")
 
 
 def _tables(lines: list[str], key: str) -> list[range]:
-    """The lines of the tables of a key, e.g. [couplings.joint_6], and of its dotted entries."""
+    """Return the lines of a key's tables, e.g. [couplings.joint_6], and of its dotted entries."""
     found: list[range] = []
     inside = False
     for number, line in enumerate(lines):

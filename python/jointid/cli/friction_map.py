@@ -1,4 +1,4 @@
-"""Tables of steady speeds and torques: what `identify` and `info` print where there is no time and no position."""
+"""Tables of steady speeds and torques: the output of `identify` and `info` for files without time and position."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ _USED = frozenset(
         "--quiet",
     )
 )
-"""Options that a table of steady speeds has; another one would change nothing."""
+"""Options for a table of steady speeds. Another option would have no effect."""
 
 
 def printed_map(paths: Sequence[Path], arguments: argparse.Namespace, error: InputError) -> None:
-    """Print the friction of tables of steady speeds and torques; raise the error again for any other file."""
+    """Print the friction in tables of steady speeds and torques. Raise the error again for any other file."""
     found = _friction_map(paths, arguments)
     if found is None:
         raise error
@@ -71,7 +71,7 @@ def _friction_map(paths: Sequence[Path], arguments: argparse.Namespace) -> Stead
 
 
 def _add_friction(headers: Sequence[str], found: dict[str, list[Column]]) -> None:
-    """Take the column beside the velocity for the torque if it has the unit of one: ``friction [Nm]``."""
+    """Use the column next to the velocity as the torque if it has a unit of torque: ``friction [Nm]``."""
     from jointid.recording.columns import Column
     from jointid.recording.headers import understood
     from jointid.recording.signals import dimensions
@@ -86,7 +86,7 @@ def _add_friction(headers: Sequence[str], found: dict[str, list[Column]]) -> Non
 def _steady(
     path: Path, arguments: argparse.Namespace
 ) -> tuple[np.ndarray, np.ndarray, str, list[str]] | None:
-    """Velocity, torque, kind, and the signals whose unit is assumed; None for a file that is no such table."""
+    """Return velocity, torque, kind, and the signals with an assumed unit; None for any other file."""
     from jointid.recording.columns import candidates_of
     from jointid.recording.readers.loading import table_of
 
@@ -100,7 +100,7 @@ def _steady(
         return None
     _add_friction(table.headers, found)
     known = {column.index for columns in found.values() for column in columns}
-    # A column that nobody knows may be the time, or the position.
+    # An unknown column may be the time or the position.
     if (
         table.saved is not None
         or len(known) < len(table.headers)

@@ -1,4 +1,4 @@
-"""The options of `demo`, `identify`, `compare`, `report` and `info`."""
+"""Options of `demo`, `identify`, `compare`, `report` and `info`."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The joint of a command: a joint file, options for the facts that most joints need, or both."""
+"""Joint of a command: a joint file, options for the facts that most joints need, or both."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 _DRIVE = ("rotor_inertia",)
-# By option: the field of a joint's link.
+# Field of a joint's link for each option.
 _LINK = {"mass": "mass", "centre_of_mass": "centre_of_mass", "link_angle": "angle"}
 
 
 def joint_arguments(command: argparse.ArgumentParser) -> None:
-    """Add the joint file, and the facts that may stand in its place or beside it."""
+    """Add the joint file, and the facts that may replace or complement it."""
     command.add_argument("--joint", type=Path, help="joint file (.toml)")
     fact_arguments(command)
 
 
 def fact_arguments(command: argparse.ArgumentParser) -> None:
-    """Add the facts of a drive and its link; the gear ratio is among the options of a reading."""
+    """Add the facts of a drive and its link. The gear ratio is an option of the reading."""
     command.add_argument(
         "--torque-constant",
         metavar="VALUE[,VALUE...]",
@@ -59,12 +59,12 @@ def _angle(text: str) -> float:
 
 
 def joint_file(arguments: argparse.Namespace) -> Joint | None:
-    """The joint of --joint; None without one. The options are read, too: before any recording.
+    """Return the joint of --joint; None without one. Options are checked, too, before a recording is read.
 
     Raises
     ------
     InputError
-        No such file, no joint file, or an option that is no number.
+        The file does not exist or is not a joint file, or an option is not a number.
     """
     from jointid.joint.joint import Joint
 
@@ -75,22 +75,22 @@ def joint_file(arguments: argparse.Namespace) -> Joint | None:
 def joint_of(
     arguments: argparse.Namespace, file: Joint | None, recordings: Sequence[Recording]
 ) -> Joint | None:
-    """The joint of a command: that of its file with the options' facts, which win; None where nothing is known.
+    """Return the joint of a command: its file with the options' facts, which have priority; None if nothing is known.
 
-    Without a file the joint is of the recordings' kind, and has a sensor if they have.
+    Without a file, the joint has the kind of the recordings, and a sensor if they have one.
 
     Parameters
     ----------
     arguments : Namespace
         Arguments of a command with `joint_arguments`.
     file : Joint or None
-        As `joint_file` returned it.
+        Result of `joint_file`.
     recordings : sequence of Recording
 
     Raises
     ------
     InputError
-        A value that cannot be used; it names the option.
+        A value cannot be used; the error names the option.
     """
     first = recordings[0]
     sensor = all(each.sensor is not None for each in recordings)
@@ -100,20 +100,20 @@ def joint_of(
 def with_facts(
     file: Joint | None, facts: Mapping[str, Any], name: str, kind: str, *, sensor: bool
 ) -> Joint | None:
-    """A joint with some fields changed, or one of these; None where there is neither.
+    """Return a joint with some fields changed, or a new one with these fields; None without both.
 
     Parameters
     ----------
     file : Joint or None
     facts : mapping of str to object
-        Fields of a joint, as of `facts_of`.
+        Fields of a joint, as from `facts_of`.
     name, kind, sensor
         Fields of a joint without a file.
 
     Raises
     ------
     InputError
-        A value that cannot be used; it names the option.
+        A value cannot be used; the error names the option.
     """
     from jointid.joint.joint import Joint
     from jointid.joint.model import Model
@@ -131,13 +131,13 @@ def with_facts(
 
 
 def weighed(facts: Mapping[str, Any], model: Model, *, sensor: bool) -> dict[str, Any]:
-    """Facts of a joint, with the weight of a link that the options state: a sensor measures it, else it is known.
+    """Return facts of a joint with the weight of a stated link: with a sensor it is measured, otherwise known.
 
     Parameters
     ----------
     facts : mapping of str to object
     model : Model
-        Model of the joint file; its gravity stays.
+        Model of the joint file; its gravity is kept.
     sensor : bool
         Whether the joint has a torque sensor.
     """
@@ -147,32 +147,32 @@ def weighed(facts: Mapping[str, Any], model: Model, *, sensor: bool) -> dict[str
 
 
 def torque_needed(arguments: argparse.Namespace, file: Joint | None) -> Callable[[Recording], Any]:
-    """What raises that a recording has no torque that the command's joint could turn into one at the output."""
+    """Return a check that raises if a recording has no torque that the joint can convert to one at the output."""
     from jointid.problem.recordings import output_torque
 
     def check(recording: Recording) -> None:
         joint = joint_of(arguments, file, [recording])
         current = recording.torque is None and recording.motor_torque is None
         if current and file is None and (joint is None or joint.torque_constant is None):
-            joint = None  # then all options are named that are missing
+            joint = None  # the error then names all missing options
         output_torque(recording, joint)
 
     return check
 
 
 def facts_of(arguments: argparse.Namespace, file: Joint | None = None) -> dict[str, Any]:
-    """The fields of a joint that the options state.
+    """Return the fields of a joint that the options state.
 
     Parameters
     ----------
     arguments : Namespace
     file : Joint or None
-        Whose link the options change. Default: none.
+        Joint with the link that the options change. Default: none.
 
     Raises
     ------
     InputError
-        A value that cannot be used, or half of a link; it names the option.
+        A value cannot be used, or the link is incomplete; the error names the option.
     """
     from jointid.joint.link import Link
 
@@ -198,9 +198,9 @@ def facts_of(arguments: argparse.Namespace, file: Joint | None = None) -> dict[s
 
 
 def _inertia(arguments: argparse.Namespace) -> float | None:
-    """The inertia of one joint; of a robot the option says what of it is identified."""
+    """Return the inertia of one joint. For a robot, the option selects the inertias to identify."""
     stated = getattr(arguments, "inertia", None)
-    if isinstance(stated, list):  # compare --robot takes several
+    if isinstance(stated, list):  # compare --robot accepts several
         if len(stated) > 1:
             raise InputError("give one inertia for one joint", argument="inertia", value=stated)
         stated = stated[0]
@@ -228,7 +228,7 @@ def _fields(link: Any) -> dict[str, Any]:
 
 
 def _of_option(error: InputError) -> InputError:
-    """An error about a field, without the place that Python names: on a command line the option says it."""
+    """Return an error about a field without the place in Python, because the option names it already."""
     options = {field: option for option, field in _LINK.items()}
     of_link = error.place == "link"
     return InputError(

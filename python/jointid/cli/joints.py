@@ -1,4 +1,4 @@
-"""`jointid identify --joints`: several joints of one file."""
+"""Command `jointid identify --joints`: several joints of one file."""
 
 from __future__ import annotations
 
@@ -23,14 +23,14 @@ _OF_ONE_JOINT = ("checkpoint", "resume", "selftest", "bootstrap", "causes")
 
 
 def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> int:
-    """Identify several joints of one file, each for itself.
+    """Identify several joints of one file separately.
 
     Parameters
     ----------
     arguments : Namespace
         Arguments of `jointid identify`.
     joints : sequence of str
-        Empty: all.
+        Names of the joints; empty for all.
     """
     from jointid._core import GaOptions
     from jointid.identification.search.search import Search
@@ -71,7 +71,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         wanted = joints or robot.names
         files = {name: Joint.load(str(arguments.joint).replace(_MARK, name)) for name in wanted}
         joint = {name: each.replace(**facts) for name, each in files.items()}
-    elif facts.keys() <= {"gear_ratio"}:  # the recording has it
+    elif facts.keys() <= {"gear_ratio"}:  # the recording contains it
         joint = file
     else:
         joint = with_facts(file, facts, "", robot.kind, sensor=robot.sensor is not None)
@@ -91,7 +91,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
         )
     wording, saved = Wording.of(arguments), estimate_file(arguments)
     if arguments.report is not None:
-        # A page words all joints alike, so that no command there can name the joint to design for.
+        # A page has the same wording for all joints, so its commands cannot name the joint to design for.
         save_report(found, arguments.report, action=replace(wording, saved="ESTIMATE").of_command)
     if saved is not None:
         found.save(saved)
@@ -120,7 +120,7 @@ def identify_several(arguments: argparse.Namespace, joints: Sequence[str]) -> in
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    """Refuse what holds for one joint only, before the work."""
+    """Refuse options that are valid for one joint only, before the work."""
     if len(arguments.recordings) > 1:
         raise InputError(
             "several joints are identified from one recording",

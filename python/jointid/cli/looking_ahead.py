@@ -1,4 +1,4 @@
-"""Advice that suffices: what an error advises, together with what the next reading would ask for."""
+"""Complete advice for an error: its own, and that of the errors which would follow."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from typing import Any
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 
-_STEPS = 4  # errors that are looked for beyond the first
+_STEPS = 4  # number of further errors to look for
 _MERGED = ("columns", "units", "scale", "side", "where")
 _USUAL = {
     "gear_ratio": 1.0,
     "sample_period": 0.001,
-}  # in place of what only the user knows, to look further
+}  # trial values in place of those that only the user knows
 _OF_SEVERAL = "load_robot"
 _READING = ("load", "Joint")  # both are options of a command
 
@@ -23,24 +23,24 @@ def looked_ahead(
     attempt: Callable[[Mapping[str, Any]], object],
     torque_column: Callable[[Mapping[str, Any]], Action | None],
 ) -> InputError:
-    """Return an error whose first advice leads to a recording that can be used, as far as that can be seen.
+    """Return an error with advice that leads to a usable recording, as far as the program can see.
 
-    Each advice is followed and the file read again: whoever starts with a foreign log gets all that is missing in
-    one line instead of one thing at a time.
+    Each advice is applied and the file is read again. A user with a foreign log gets all that is missing in one line,
+    not in several attempts.
 
     Parameters
     ----------
     error : InputError
-        Error of the first attempt.
+        Error of the first attempt to read the file.
     attempt : callable
-        Reads again, with arguments of `load` beside those of the call; raises what is wrong then.
+        Function that reads again with additional arguments of `load`, and raises the next error.
     torque_column : callable
-        Returns the call with a column that may hold the torque, None where none does.
+        Function that returns the call with a column that may be the torque; None without such a column.
 
     Returns
     -------
     InputError
-        The same error where nothing else is missing.
+        The same error if nothing more is missing.
     """
     found = [(error, _call(error, torque_column, {}))]
     while found[-1][1] is not None and len(found) <= _STEPS:
@@ -62,7 +62,7 @@ def looked_ahead(
         return error
     merged = _merged(actions)
     purposes = "; ".join(dict.fromkeys(action.text for action in actions if action.text))
-    said: dict[str, str] = {}  # of one argument the first reason says enough
+    said: dict[str, str] = {}  # the first reason for an argument is enough
     for each, _ in found:
         said.setdefault(each.argument or each.reason, _reason(each, first=each is error))
     return InputError(
@@ -83,7 +83,7 @@ def _call(
     torque_column: Callable[[Mapping[str, Any]], Action | None],
     given: Mapping[str, Any],
 ) -> Action | None:
-    """The first advice of an error, if it is one for a reading."""
+    """Return the first advice of an error if it is about reading."""
     first = error.remedy[0] if error.remedy else None
     if not isinstance(first, Action) or first.kind != "call" or first.function not in _READING:
         return None
@@ -102,7 +102,7 @@ def _merged(actions: list[Action]) -> dict[str, Any]:
 
 
 def _filled(advised: Mapping[str, Any]) -> dict[str, Any] | None:
-    """Arguments that can be tried; None where only the user knows one."""
+    """Return arguments that can be tried; None if only the user knows one of them."""
     filled = {
         name: _USUAL.get(name, value) if value is ... else value for name, value in advised.items()
     }
@@ -114,7 +114,7 @@ def _filled(advised: Mapping[str, Any]) -> dict[str, Any] | None:
 
 
 def _of_all_joints(error: InputError, merged: Mapping[str, Any]) -> tuple[str | Action, ...]:
-    """The other advice of a file with several joints: all of them, with their ratios where one needs its own."""
+    """Return the other advice for a file with several joints: all of them, with separate gear ratios if needed."""
     ratio = {name: merged[name] for name in ("gear_ratio",) if name in merged}
     own = "; one ratio for each, comma-separated" * bool(ratio)
     return tuple(

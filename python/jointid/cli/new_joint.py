@@ -1,4 +1,4 @@
-"""The command `new`: a joint file from options, a recording, and answers at a terminal."""
+"""Command `new`: a joint file from options, a recording, and answers at a terminal."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 _LIMITS = ("position", "velocity", "torque", "current")
-# By option: how a reading is changed by an advice.
+# For each option: the argument of the reading that an advice changes.
 _READING = {
     "columns": "column",
     "units": "unit",
@@ -75,7 +75,7 @@ def add_new(new: CommandParser) -> None:
 
 
 def new(arguments: argparse.Namespace) -> None:
-    """Write a joint file that did not exist."""
+    """Write a new joint file."""
     from jointid.base.files import write_new
     from jointid.joint.joint import Joint
     from jointid.joint.new_file import new_joint_text
@@ -113,7 +113,7 @@ def _exists(path: Path) -> InputError:
 
 
 def _stated(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The facts of the options."""
+    """Return the facts of the options."""
     if arguments.kind not in (None, "revolute", "prismatic"):
         raise InputError("revolute or prismatic is expected", argument="kind", value=arguments.kind)
     facts = facts_of(arguments)
@@ -137,7 +137,7 @@ def _range(text: str) -> tuple[float, float]:
 def _joint(
     arguments: argparse.Namespace, facts: Mapping[str, Any], recording: Recording | None
 ) -> Joint:
-    """The joint of all that is known."""
+    """Return the joint with all known facts."""
     from jointid.joint.joint import Joint
     from jointid.joint.link import Limits
     from jointid.joint.model import Model
@@ -160,7 +160,7 @@ def _joint(
 
 
 def _read(arguments: argparse.Namespace) -> tuple[Recording | None, list[str]]:
-    """The recording, and what was found in it; columns and units that it needs are put into the arguments."""
+    """Return the recording and remarks on it. Advised columns and units are added to the arguments."""
     if arguments.recording is None:
         return None, []
     found = []
@@ -188,7 +188,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Recording | None, list[str]]:
 
 
 def _with_torque(recording: Recording) -> None:
-    """Refuse a recording without any torque: the column that may hold it is then proposed, too."""
+    """Refuse a recording without torque, so that the column that may be the torque is proposed, too."""
     if recording.torque is None and recording.motor_torque is None and recording.current is None:
         raise InputError(
             "the recording has no signal torque",
@@ -198,12 +198,12 @@ def _with_torque(recording: Recording) -> None:
 
 
 def _obeyed(arguments: argparse.Namespace, error: InputError) -> str:
-    """Put what an error advises into the arguments; returns it as options.
+    """Apply the advice of an error to the arguments. Return it as options.
 
     Raises
     ------
     InputError
-        The same error, where only the user knows what to do.
+        The same error, if only the user knows the remedy.
     """
     action = error.remedy[0] if error.remedy else None
     if not isinstance(action, Action) or action.kind != "call" or action.function != "load":
@@ -215,14 +215,14 @@ def _obeyed(arguments: argparse.Namespace, error: InputError) -> str:
         if name not in _READING or ... in value.values():
             raise error
         pairs = getattr(arguments, _READING[name])
-        if name == "units":  # of the others SI is a guess: what the values say is better
+        if name == "units":  # for other signals SI is a guess; the values give a better one
             value = {key: unit for key, unit in value.items() if key == "time"}
         pairs += [(key, "none" if each is None else str(each)) for key, each in value.items()]
     return shlex.join(_reading_options(arguments))
 
 
 def _reading_options(arguments: argparse.Namespace) -> list[str]:
-    """How the recording is read, as options of any command."""
+    """Return how the recording is read, as options of any command."""
     options: list[str] = []
     for name in (*_READING.values(), "extra"):
         pairs = by_name(name, getattr(arguments, name))
@@ -240,7 +240,7 @@ def _plain(value: object) -> str:
 
 
 def _next(arguments: argparse.Namespace) -> str:
-    """The command that identifies with the new file."""
+    """Return the command that identifies with the new file."""
     recording = "run.csv" if arguments.recording is None else str(arguments.recording)
     options = _reading_options(arguments)
     return shlex.join(["jointid", "identify", recording, "--joint", str(arguments.file), *options])
@@ -249,7 +249,7 @@ def _next(arguments: argparse.Namespace) -> str:
 def _answers(
     arguments: argparse.Namespace, facts: Mapping[str, Any], recording: Recording | None
 ) -> dict[str, Any]:
-    """What is asked at the terminal, of the facts that no option states; what is not known stays out."""
+    """Return the user's answers for the facts that no option states. Unknown facts are left out."""
     from jointid.joint.new_file import FACTS
 
     known = dict(facts)

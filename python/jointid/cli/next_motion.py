@@ -1,4 +1,4 @@
-"""The command that designs the motion to record next, as a finding advises it."""
+"""Command that designs the next motion to record, as a finding advises it."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ _LIMITS = {
 
 
 def words_of_next_motion(action: Action, joint: str, estimate: str, of_joint: str = "") -> str:
-    """An action that designs a motion, as a command.
+    """Return an action that designs a motion, as a command.
 
     Parameters
     ----------
     action : Action
-        An action of kind "record" with the function "next_motion".
+        Action of kind "record" with the function "next_motion".
     joint, estimate : str
-        The joint file and the saved estimate, or what stands for them.
+        Joint file and saved estimate, or placeholders for them.
     of_joint : str
-        The joint, where the estimate is of several. Default: it is of one.
+        Name of the joint if the estimate has several. Default: it has one.
     """
     command = ["jointid", "design", joint, "--after", estimate]
     if of_joint:
@@ -35,7 +35,7 @@ def words_of_next_motion(action: Action, joint: str, estimate: str, of_joint: st
     limits: Mapping[str, Any] = action.arguments.get("limits", {})
     for name, value in limits.items():
         option, unknown = _LIMITS[name]
-        # With "=": a value that begins with a minus would be taken for an option.
+        # With "=", because a value that begins with a minus sign would be read as an option.
         command.append(f"{option}={unknown if _unknown(value) else behind_option(value)}")
     if "duration" in action.arguments:
         command.append(f"--duration {behind_option(action.arguments['duration'])}")
@@ -47,6 +47,6 @@ def _unknown(value: object) -> bool:
 
 
 def runs_as_printed(action: Action) -> bool:
-    """Whether the design needs nothing that only the user knows."""
+    """Return whether the design needs no value that only the user knows."""
     limits: Mapping[str, Any] = action.arguments.get("limits", {})
     return not any(_unknown(value) for value in (*limits.values(), *action.arguments.values()))

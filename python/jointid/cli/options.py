@@ -1,4 +1,4 @@
-"""Which option of a command stands for which argument of Python; those of `identify` from their declaration."""
+"""Options of the commands and their arguments in Python; those of `identify` come from their declaration."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.base.options import options_of
 from jointid.cli.arguments import decimal, numbers_by_name, pair, windows
 from jointid.identification.options import IdentifyOptions
 
-# By the form of an option: how argparse takes it.
+# Settings of argparse for each form of an option.
 _FORMS: Mapping[str, Mapping[str, Any]] = {
     "text": {},
     "number": {"type": decimal},
@@ -20,7 +20,7 @@ _FORMS: Mapping[str, Mapping[str, Any]] = {
 }
 
 DECLARED = {name: option for name, option in options_of(IdentifyOptions).items() if option.flag}
-"""Those that the command line has, by name; `--model` differs from command to command."""
+"""Options of the command line by name. `--model` differs between the commands."""
 
 _READING = {
     "columns": "--column",
@@ -186,7 +186,7 @@ OPTIONS: Mapping[str, Mapping[str, str]] = {
     "explain": {},
     "info": {**_READING, **_ROBOT},
 }
-"""By command and argument."""
+"""Options by command and argument."""
 
 PLACEHOLDERS: Mapping[str, str] = {
     "--column": "HEADER",
@@ -201,7 +201,7 @@ PLACEHOLDERS: Mapping[str, str] = {
     "--grid": "VALUE",
     "--prior": "LOW,HIGH",
 }
-"""Options of the form NAME=VALUE, and what stands for a value that the user has to choose."""
+"""Options of the form NAME=VALUE, with a placeholder for a value that the user has to choose."""
 
 FILES: Mapping[str, str] = {
     **dict.fromkeys(("--joint", "--believe", "--simulate"), "JOINT"),
@@ -215,14 +215,14 @@ FILES: Mapping[str, str] = {
         "FILE",
     ),
 }
-"""Options that take a file, and what stands for one that the user has to choose."""
+"""Options that take a file, with a placeholder for a file that the user has to choose."""
 
 NUMBERS: Mapping[str, str] = {
     "--gear-ratio": "RATIO",
     "--rate": "HZ",
     "--unpacked": "BYTES",
 }
-"""Options that take a number, and what stands for one that the user has to choose."""
+"""Options that take a number, with a placeholder for a number that the user has to choose."""
 
 FLAGS = frozenset(
     {
@@ -239,9 +239,9 @@ FLAGS = frozenset(
         "--approximate",
     }
 )
-"""Options that may stand without a value."""
+"""Options that may occur without a value."""
 
-# The core and the simulation name a field by the class that has it.
+# The core and the simulation name a field with its class.
 _CLASSES = {
     "GaOptions": "ga",
     "Sensors": "sensors",
@@ -262,7 +262,7 @@ _CLASSES = {
 
 
 def option_of(command: str, argument: str) -> tuple[str, str]:
-    """Return the option for an argument, and the key behind it; both empty if the command has none.
+    """Return the option for an argument, and its key; both are empty if the command has no such option.
 
     Parameters
     ----------
@@ -289,7 +289,7 @@ def option_of(command: str, argument: str) -> tuple[str, str]:
 
 
 def declared_arguments(command: argparse.ArgumentParser) -> None:
-    """Add them."""
+    """Add the declared options."""
     for name, option in DECLARED.items():
         command.add_argument(
             option.flag,
@@ -301,12 +301,12 @@ def declared_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def stated_options(arguments: argparse.Namespace) -> dict[str, Any]:
-    """Those that a command was called with, but for own terms, which `with_terms` adds to the model.
+    """Return the options of a command line, except own terms, which `with_terms` adds to the model.
 
     Raises
     ------
     InputError
-        Not a number, or a name is given twice.
+        A value is not a number, or a name is given twice.
     """
     typed = {name: getattr(arguments, name) for name in DECLARED if name != "terms"}
     return {

@@ -1,4 +1,4 @@
-"""Outputs of a command, checked before its work, not after it."""
+"""Outputs of a command, checked before its work."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.base.files import new_beside
 
 
 def estimate_file(arguments: argparse.Namespace) -> Path | None:
-    """Return the .json file that a command writes its estimate to: the one of `--save`, or one with the report."""
+    """Return the .json file for the estimate of a command: that of `--save`, or one next to the report."""
     save, page = (getattr(arguments, name, None) for name in ("save", "report"))
     if isinstance(save, Path) and save.suffix == ".json":
         return save
@@ -23,7 +23,7 @@ def estimate_file(arguments: argparse.Namespace) -> Path | None:
 
 
 def say_written(**files: Path | None) -> None:
-    """Say in one line which files were written, by what they are."""
+    """Print the written files in one line, each with its kind."""
     written = [
         f"{kind.replace('_', ' ')}: {path}" for kind, path in files.items() if path is not None
     ]
@@ -32,12 +32,12 @@ def say_written(**files: Path | None) -> None:
 
 
 def check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse before the work, not after it, what cannot be written.
+    """Refuse outputs that cannot be written, before the work.
 
     Raises
     ------
     InputError
-        Another extension than .toml or .json, or a folder that does not exist.
+        An extension is not .toml or .json, or a folder does not exist.
     """
     save = arguments.save
     if save is not None and save.suffix not in (".toml", ".json"):
@@ -54,8 +54,8 @@ _READ = (
     *("source", "into"),
 )
 _WRITTEN = ("output", "report", "table", "plot", "checkpoint", "save", "to")
-# Continuing a search in its own file, and updating a joint file, are intended; but values of an
-# emulated joint do not belong into the file of the real one.
+# A search may continue in its own file, and a joint file may be updated. But values of an emulated joint do not
+# belong in the file of the real one.
 _INTENDED = {("resume", "checkpoint"), ("joint", "save"), ("into", "to")}
 
 
@@ -87,12 +87,12 @@ def check_distinct(arguments: argparse.Namespace) -> None:
 
 
 def check_page(argument: str, path: Path | None) -> None:
-    """Refuse a page of a format that is not written, or in a folder that does not exist.
+    """Refuse a page with an unknown format, or in a folder that does not exist.
 
     Raises
     ------
     InputError
-        Another extension, or no such folder.
+        The extension is not supported, or the folder does not exist.
     """
     if path is not None and not path.is_dir():
         from jointid.report.renderers import ending_of_page
@@ -102,12 +102,12 @@ def check_page(argument: str, path: Path | None) -> None:
 
 
 def check_folder(argument: str, path: Path | None) -> None:
-    """Refuse a file to be written in a folder that does not exist, or takes no files.
+    """Refuse a file in a folder that does not exist or in which no file can be written.
 
     Raises
     ------
     InputError
-        There is no such folder, or nothing can be written in it.
+        The folder does not exist, or nothing can be written in it.
     """
     if path is None:
         return
@@ -115,14 +115,14 @@ def check_folder(argument: str, path: Path | None) -> None:
         raise InputError(f"the folder {path.parent} does not exist", argument=argument, value=path)
     if path.exists():
         return
-    try:  # the permissions alone do not tell: some folders take no files from anybody
+    try:  # permissions are not enough: some folders accept no files
         handle, tried = new_beside(path)
         try:
             os.close(handle)
         finally:
             tried.unlink()
     except OSError as error:
-        # In such a folder "no such file" is meant of the file to be written.
+        # In such a folder, "no such file" refers to the file to be written.
         reason = f" ({error.strerror})" if error.strerror and error.errno != errno.ENOENT else ""
         raise InputError(
             f"nothing can be written in the folder {path.parent}{reason}",
@@ -133,12 +133,12 @@ def check_folder(argument: str, path: Path | None) -> None:
 
 
 def check_output_folder(argument: str, path: Path) -> None:
-    """Refuse a folder to be made that is a file, or in a folder that does not exist.
+    """Refuse a new folder if its name is a file's, or if its parent folder does not exist.
 
     Raises
     ------
     InputError
-        A file, or no such folder.
+        The name is a file's, or the parent folder does not exist.
     """
     if path.exists() and not path.is_dir():
         raise InputError("this is a file; a folder is expected", argument=argument, value=path)
@@ -146,12 +146,12 @@ def check_output_folder(argument: str, path: Path) -> None:
 
 
 def check_recording_file(argument: str, path: Path | None) -> None:
-    """Refuse a file that is none of a recording's, or in a folder that does not exist.
+    """Refuse a file without an extension of a recording, or in a folder that does not exist.
 
     Raises
     ------
     InputError
-        Another extension, or no such folder.
+        The extension is not supported, or the folder does not exist.
     """
     if path is not None and not path.name.lower().endswith((".csv", ".csv.gz", ".npz")):
         raise InputError(

@@ -1,4 +1,4 @@
-"""The command line's parser: the commands at once, the options of one when it is called."""
+"""Parser of the command line: all commands at once, the options of a command when it is called."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import re
 from jointid.cli.command_table import HELP, options_of
 from jointid.cli.exit_codes import BAD_INPUT
 
-TYPE_CHECKING = False  # as in typing, which `jointid --help` does without
+TYPE_CHECKING = False  # as in typing, which `jointid --help` does not import
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from typing import Any, NoReturn
 
-# What argparse says in the terms of a programmer.
+# Replacements for argparse's messages, which use a programmer's terms.
 _PLAIN = {
     "the following arguments are required:": "missing:",
     "expected one argument": "a value is expected",
@@ -23,7 +23,7 @@ _PLAIN = {
 
 
 def _formatter(prog: str) -> argparse.HelpFormatter:
-    """As wide as the terminal; argparse, which makes one for each option, asks shutil, and that imports lzma."""
+    """Return a formatter as wide as the terminal. argparse's own is slow, because shutil imports lzma."""
     try:
         columns = int(os.environ.get("COLUMNS", 0)) or os.get_terminal_size(1).columns
     except (OSError, ValueError):  # no terminal; no number
@@ -31,26 +31,26 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
     return argparse.RawDescriptionHelpFormatter(prog, width=(columns or 80) - 2)
 
 
-# What another command has, and this one may do otherwise.
+# Options of another command, with a hint for this one.
 _ELSEWHERE = {"--by": "--where COLUMN=VALUE reads one run; identify reads a servo's with --by"}
 _NEGATIVE = re.compile(
     r"-\.?\d"
-)  # -1, -.5, -60deg,60deg: values, for no option begins with a digit
+)  # -1, -.5, -60deg,60deg are values, because no option begins with a digit
 
 
 class CommandParser(argparse.ArgumentParser):
-    """One line on bad usage, not a page; the options of a command are added when they are needed.
+    """Parser that reports bad usage in one line. The options of a command are added when they are needed.
 
     Parameters
     ----------
     command : str
-        The command whose options it takes. Default: it has no options to add.
+        Command; its options are added later. Default: no options to add.
     **options
-        Those of `argparse.ArgumentParser`.
+        Options of `argparse.ArgumentParser`.
     """
 
     def __init__(self, command: str = "", **options: Any) -> None:
-        # Without abbreviations: --joint, a file, is not --joints where a command has only these.
+        # Without abbreviations: the file --joint must not be read as --joints in a command that has only this one.
         plain = {"formatter_class": _formatter, "exit_on_error": False, "allow_abbrev": False}
         super().__init__(**options | plain)
         self._negative_number_matcher = _NEGATIVE
@@ -64,7 +64,7 @@ class CommandParser(argparse.ArgumentParser):
             options_of(command)(self)
 
     def help_later(self, option: argparse.Action, text: Callable[[], str]) -> None:
-        """Say how the help of an option is found once somebody asks for it."""
+        """Set the function that returns the help of an option when it is requested."""
         self._later.append((option, text))
 
     def format_help(self) -> str:
@@ -74,7 +74,7 @@ class CommandParser(argparse.ArgumentParser):
         return super().format_help()
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Read arguments, and say what is wrong with them in one line."""
+        """Read arguments. Report errors in one line."""
         self.complete()
         try:
             known, unknown = super().parse_known_args(args, namespace)
@@ -82,12 +82,12 @@ class CommandParser(argparse.ArgumentParser):
             if error.argument_name == "COMMAND":
                 self.error(self._unknown_command(args))
             self.error(": ".join(filter(None, (error.argument_name, error.message))))
-        if unknown:  # said here, where the command and its options are known
+        if unknown:  # reported here, where the command and its options are known
             self.error(self._unknown(unknown))
         return known, unknown
 
     def _unknown_command(self, arguments: Sequence[str]) -> str:
-        """What is said of a word that is no command."""
+        """Return the message about a word that is not a command."""
         from jointid.recording.signals import closest
 
         word = next((each for each in arguments if not each.startswith("-")), "")
@@ -96,7 +96,7 @@ class CommandParser(argparse.ArgumentParser):
         return f"there is no command {word}; {known}"
 
     def _unknown(self, arguments: list[str]) -> str:
-        """What is said of arguments that no option takes; of options, the first."""
+        """Return the message about arguments that no option takes; if there are options, about the first."""
         from jointid.recording.signals import closest
 
         for argument in arguments:
@@ -113,7 +113,7 @@ class CommandParser(argparse.ArgumentParser):
         return f"unknown: {' '.join(arguments)}"
 
     def error(self, message: str) -> NoReturn:
-        """End with one line on bad usage."""
+        """Exit with a message of one line on bad usage."""
         sentence = " ".join(message.split())
         for phrase, plain in _PLAIN.items():
             sentence = sentence.replace(phrase, plain)
@@ -121,13 +121,14 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def command_parser(command: str = "") -> CommandParser:
-    """The command line's grammar.
+    """Return the grammar of the command line.
 
     Parameters
     ----------
     command : str
-        The only command that will be read, where that is known: the parsers of the others, which take as long to make
-        as that one takes to read, are left out. Default, and for no command's name: all are made.
+        The only command that will be read, if it is known. The parsers of the other commands are then left out,
+        because creating them takes as long as reading this one. By default, and if it is not a command's name, all
+        are created.
     """
     main_parser = CommandParser(
         prog="jointid",

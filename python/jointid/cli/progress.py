@@ -1,4 +1,4 @@
-"""Progress bars on the terminal for what takes long."""
+"""Progress bars on the terminal for long work."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _PERIOD = 0.1  # [s] between two drawings
 
 
 class _Bar:
-    """A bar on a terminal, and nothing elsewhere."""
+    """Bar on a terminal; it shows nothing elsewhere."""
 
     def __init__(self, *, enabled: bool = True, stream: TextIO | None = None) -> None:
         self._stream = stream if stream is not None else sys.stderr
@@ -30,7 +30,7 @@ class _Bar:
         self._pace = Pace()
 
     def _draw(self, share: float, text: str, resumed: float = 0.0) -> None:
-        """Draw, at most ten times a second; `resumed` is the share that was done before."""
+        """Draw at most ten times per second. `resumed` is the share that was done in an earlier run."""
         now = time.monotonic()
         if not self._enabled or now - self._drawn < _PERIOD:
             return
@@ -42,12 +42,12 @@ class _Bar:
             text = f"about {left:.0f} s left, {text}"
         full = round(_WIDTH * min(1.0, share))
         line = f"{'█' * full}{'·' * (_WIDTH - full)} {text}"
-        # A line that goes on in the next one could not be drawn over.
+        # A line that wraps could not be overwritten.
         self._stream.write(f"\r{line[: (columns_of(self._stream) or len(line) + 1) - 1]}\033[K")
         self._stream.flush()
 
     def __enter__(self) -> Self:
-        """Nothing yet."""
+        """Draw nothing yet."""
         return self
 
     def __exit__(
@@ -63,12 +63,12 @@ class _Bar:
 
 
 class Progress(_Bar):
-    """A callback for `identify` that draws a bar on a terminal, and nothing elsewhere.
+    """Callback for `identify` that draws a bar on a terminal, and nothing elsewhere.
 
     Parameters
     ----------
     total : int, optional
-        Generations at most; default: those of the default options.
+        Largest number of generations. Default: that of the default options.
     enabled : bool
     stream : text file, optional
         Default: standard error.
@@ -89,7 +89,7 @@ class Progress(_Bar):
 
 
 class JointsProgress(_Bar):
-    """A callback for `identify_joints` that says which joint is at work.
+    """Callback for `identify_joints` that shows the current joint.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ class JointsProgress(_Bar):
 
 
 class ComparisonProgress(_Bar):
-    """A callback for `compare_models` that draws a bar on a terminal, and nothing elsewhere.
+    """Callback for `compare_models` that draws a bar on a terminal, and nothing elsewhere.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class ComparisonProgress(_Bar):
 
 
 class MotionProgress(_Bar):
-    """A callback for `design_excitation` that draws a bar on a terminal, and nothing elsewhere.
+    """Callback for `design_excitation` that draws a bar on a terminal, and nothing elsewhere.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ class MotionProgress(_Bar):
     """
 
     def __call__(self, step: DesignProgress) -> None:
-        """Show how many motions were tried."""
+        """Show the number of tried motions."""
         self._draw(
             step.number / step.total,
             f"motion {step.number}/{step.total}, error {100.0 * step.best:.2g} %",
@@ -137,7 +137,7 @@ class MotionProgress(_Bar):
 
 
 class StudyProgress(_Bar):
-    """A callback for `sweep` that draws a bar on a terminal, and nothing elsewhere.
+    """Callback for `sweep` that draws a bar on a terminal, and nothing elsewhere.
 
     Parameters
     ----------
@@ -151,7 +151,7 @@ class StudyProgress(_Bar):
         self._first: int | None = None
 
     def __call__(self, step: StudyStep) -> None:
-        """Show the trials that are done."""
+        """Show the finished trials."""
         if self._first is None:
             self._first = step.number - len(step.rows)
         text = f"trial {step.number}/{step.total}"

@@ -1,4 +1,4 @@
-"""The commands `check` and `first-motion`, and what `run` asks of a bench before it moves a real joint."""
+"""Commands `check` and `first-motion`, and the certificate that `run` requires before it moves a real joint."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from jointid.hardware.session.watchdog import Watchdog
 
 REFUSED = 3
-"""Exit code when a bench is refused."""
+"""Exit code if a bench is refused."""
 
 
 def add_check(check: argparse.ArgumentParser) -> None:
@@ -76,7 +76,7 @@ def _add_common(command: Any, printed: str) -> None:
 
 
 def check(arguments: argparse.Namespace) -> int:
-    """Show what is connected."""
+    """Show the connected drive."""
     from jointid.cli.bench_settings import in_force
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.proof.check import check_bench
@@ -104,7 +104,7 @@ def check(arguments: argparse.Namespace) -> int:
 
 
 def first_motion(arguments: argparse.Namespace) -> int:
-    """Move a joint for the first time; a real one that passes is certified."""
+    """Move a joint for the first time. A real joint that passes gets a certificate."""
     from jointid.hardware.bench.bench import Bench
     from jointid.hardware.bench.opened_drive import open_drive
     from jointid.hardware.proof.certificate import Certificate, certificate_path
@@ -121,7 +121,7 @@ def first_motion(arguments: argparse.Namespace) -> int:
         options = replace(options, compare_friction=False)
     bench = replace(bench, first_motion=options)
     if not (arguments.emulate or arguments.yes):
-        with open_drive(bench) as drive:  # a bus that is not there is said before anybody is asked
+        with open_drive(bench) as drive:  # a missing bus is reported before the user is asked
             sizes = sizes_of(options, resolution_of(bench, drive))
     if not (arguments.emulate or arguments.yes or _agreed(bench, sizes)):
         print("jointid first-motion: not started", file=sys.stderr)
@@ -155,9 +155,9 @@ def first_motion(arguments: argparse.Namespace) -> int:
 
 
 def missing_certificate(joint_file: Path, bench: Bench) -> str:
-    """Return why a real joint must not be moved by `run`; empty when its certificate holds.
+    """Return why `run` must not move a real joint; empty if its certificate is valid.
 
-    What the certificate cannot tell is printed as a note. The drive is asked who it is: its motor stays off.
+    Facts that the certificate does not prove are printed as notes. The drive reports its identity; its motor stays off.
 
     Parameters
     ----------
@@ -203,7 +203,7 @@ def missing_certificate(joint_file: Path, bench: Bench) -> str:
 def _objections(
     joint_file: Path, bench: Bench, identity: Any, watchdog: Watchdog | None
 ) -> list[str]:
-    """What speaks against the certificate of a joint file."""
+    """Return the objections to the certificate of a joint file."""
     from jointid.hardware.proof.certificate import Certificate, certificate_path
 
     path = certificate_path(joint_file)
@@ -216,13 +216,13 @@ def _objections(
 
 
 def _notes(joint_file: Path, bench: Bench, identity: Any) -> list[str]:
-    """What the certificate of a joint file cannot tell; nothing without one."""
+    """Return the facts that a joint file's certificate does not prove; empty without a certificate."""
     from jointid.hardware.proof.certificate import Certificate, certificate_path
 
     try:
         return Certificate.load(certificate_path(joint_file)).notes(bench, identity)
     except InputError:
-        return []  # said as an objection
+        return []  # already reported as an objection
 
 
 def _show(line: str) -> None:
@@ -230,7 +230,7 @@ def _show(line: str) -> None:
 
 
 def _agreed(bench: Bench, sizes: Sizes) -> bool:
-    """Whether the user agrees that the real joint moves."""
+    """Return whether the user agrees that the real joint moves."""
     print(
         f"'{bench.joint.name}' will move by {sizes}, over {bench.address}. With a wrong gear ratio it moves farther.",
         file=sys.stderr,

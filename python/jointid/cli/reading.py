@@ -1,4 +1,4 @@
-"""The recordings of a command: how they are read, and what is advised where they cannot be."""
+"""Recordings of a command: the arguments for reading them, and advice if they cannot be read."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ def load_all(
     *,
     usable: Callable[[Recording], object] | None = None,
 ) -> list[Recording]:
-    """The recordings of a command, each read with the same --column, --unit and --where.
+    """Return the recordings of a command, each read with the same --column, --unit and --where.
 
     Parameters
     ----------
     models : sequence of Model
-        Their own terms name columns that are read as extra signals, unless --extra says which. Default: none.
+        Models. Columns of their own terms are read as extra signals, unless --extra names others. Default: none.
     usable : callable, optional
-        Raises what a recording lacks for the command. Default: nothing is needed.
+        Function that raises if a recording is not sufficient for the command. Default: no check.
 
     Raises
     ------
     InputError
-        With all that is missing, as far as one can see: see `looked_ahead`.
+        A recording cannot be read. The error names all that is missing, as far as possible; see `looked_ahead`.
     """
     from jointid.recording.readers.loading import load
     from jointid.recording.sides import MOTOR
@@ -93,7 +93,7 @@ def load_all(
 
 
 def _ratio_of_file(arguments: argparse.Namespace) -> float | None:
-    """The gear ratio of the joint file, for signals of the motor; None without such a file."""
+    """Return the gear ratio of the joint file, for signals of the motor; None without such a file."""
     file = getattr(arguments, "joint", None)
     if file is None:
         return None
@@ -103,7 +103,7 @@ def _ratio_of_file(arguments: argparse.Namespace) -> float | None:
 
 
 def with_changes(reading: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Arguments of `load` with some changed; columns, units and factors signal by signal."""
+    """Return arguments of `load` with changes; columns, units and factors change for each signal separately."""
     changed = dict(reading)
     for name, value in changes.items():
         both = isinstance(value, Mapping) and changed.get(name)
@@ -112,7 +112,7 @@ def with_changes(reading: Mapping[str, Any], changes: Mapping[str, Any]) -> dict
 
 
 def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> dict[str, Any]:
-    """How the recordings of a command are read, as arguments of `load` and `load_robot`."""
+    """Return the arguments of `load` and `load_robot` for the recordings of a command."""
     columns = {
         signal: int(header) if header.isdigit() else None if header == "none" else header
         for signal, header in by_name("columns", arguments.column).items()
@@ -142,7 +142,7 @@ def how_to_read(arguments: argparse.Namespace, models: Sequence[Model] = ()) -> 
 
 
 def _period(arguments: argparse.Namespace) -> float | None:
-    """The time between rows that --rate states; None if the option is not there."""
+    """Return the time between rows from --rate; None without the option."""
     rate = arguments.rate
     if rate is not None and not 0.0 < rate < float("inf"):
         raise InputError("a rate above 0 is expected", argument="sample_period", value=rate)
@@ -150,7 +150,7 @@ def _period(arguments: argparse.Namespace) -> float | None:
 
 
 def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:
-    """The joints of --joints; an empty list for all, None if the option is not there."""
+    """Return the joints of --joints; an empty list for all, None without the option."""
     text = arguments.joints
     if text is None:
         return None
@@ -163,7 +163,7 @@ def joints_wanted(arguments: argparse.Namespace) -> list[str] | None:
 
 
 def numbers_of_joints(arguments: argparse.Namespace, name: str) -> list[float] | None:
-    """The numbers of an option that has one for each joint; None if it is not there."""
+    """Return the numbers of an option that has one for each joint; None without the option."""
     text = getattr(arguments, name, None)
     if text is None:
         return None
@@ -174,7 +174,7 @@ def numbers_of_joints(arguments: argparse.Namespace, name: str) -> list[float] |
 
 
 def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:
-    """An error about an extra signal that only an own term names: on the command line it is the term's."""
+    """Return an error about an extra signal as one about --term, if only an own term names the signal."""
     root, _, name = error.argument.partition(".")
     if root != "extra" or name not in by_name("terms", getattr(arguments, "terms", None) or []):
         return error
@@ -186,7 +186,7 @@ def as_given(error: InputError, arguments: argparse.Namespace) -> InputError:
 
 
 def _of_joints(error: InputError) -> InputError:
-    """An error about `joint`, which on the command line is --joints; --joint is a file."""
+    """Return an error about `joint` as one about --joints, because --joint is a file."""
     if error.argument != "joint":
         return error
     return InputError(

@@ -1,4 +1,4 @@
-"""`--require`: the exit code of a verdict."""
+"""Option `--require`: the exit code of a verdict."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ if TYPE_CHECKING:
     from jointid.estimate.verdict import Level, Verdict
 
 LEVELS: Mapping[str, Level] = {"usable": "usable", "care": "usable with care"}
-"""The worst level that each value of `--require` accepts."""
+"""Worst level that each value of `--require` accepts."""
 
 
 def required(verdicts: Mapping[str, Verdict | None], arguments: argparse.Namespace) -> int:
-    """Return the exit code of verdicts, and say which is worse than the one asked for.
+    """Return the exit code of verdicts, and print which one is worse than required.
 
     Parameters
     ----------
     verdicts : mapping of str to Verdict or None
-        By joint, whose name may be empty; None: it could not be identified.
+        Verdicts by joint; the name may be empty. None means that the joint could not be identified.
     arguments : Namespace
         Arguments of `jointid identify`.
     """

@@ -1,4 +1,4 @@
-"""`jointid identify --robot` and `compare --robot`: all joints of a robot together."""
+"""Commands `jointid identify --robot` and `compare --robot`: all joints of a robot together."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from jointid.robot.result.result import RobotEstimate
 
 _OF_ONE_JOINT = ("joint", "checkpoint", "resume", "selftest", "causes", "population", "generations")
-_READ = ("torque_hold", "terms")  # with the recordings, and with the model
+_READ = ("torque_hold", "terms")  # used for the recordings and for the model
 
 
 def identify_whole_robot(arguments: argparse.Namespace) -> int:
@@ -79,7 +79,7 @@ def identify_whole_robot(arguments: argparse.Namespace) -> int:
 
 
 def compare_whole_robot(arguments: argparse.Namespace) -> int:
-    """Compare inertias and friction models of a robot by held-out torque."""
+    """Compare inertias and friction models of a robot by held-out data."""
     from jointid.joint.model import Model
     from jointid.report.saving import save_report
     from jointid.robot.comparing import compare_robot_models
@@ -112,7 +112,7 @@ def compare_whole_robot(arguments: argparse.Namespace) -> int:
 
 
 def _of_identify(arguments: argparse.Namespace, inertia: str) -> Wording:
-    """The wording of the command that identifies with the winner's inertia: what is advised is done by that."""
+    """Return the wording of `identify` with the chosen inertia, because that command can follow the advice."""
     wording = Wording.of(arguments)
     compared = ("--model", "--folds", "--inertia", "--report", "--save")
     kept = without_options(wording.typed[1:], compared)
@@ -121,7 +121,7 @@ def _of_identify(arguments: argparse.Namespace, inertia: str) -> Wording:
 
 
 def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, list[Any]]:
-    """The robot and its recordings."""
+    """Return the robot and its recordings."""
     from jointid.recording.readers.loading_robot import load_robot
     from jointid.robot.links.robot import Robot
 
@@ -147,12 +147,12 @@ def _read(arguments: argparse.Namespace, models: Sequence[Any]) -> tuple[Robot, 
 
 
 def saved_robot(path: Path) -> RobotEstimate | None:
-    """The estimate of a whole robot that a file holds; None if it is another file.
+    """Return the estimate of a whole robot in a file; None for another file.
 
     Raises
     ------
     InputError
-        It is one, and cannot be used.
+        The file is a robot's estimate, but cannot be used.
     """
     from jointid.base.schema import read_text
     from jointid.robot.result.document import KIND
@@ -162,14 +162,14 @@ def saved_robot(path: Path) -> RobotEstimate | None:
         return None
     try:
         document = json.loads(read_text(path))
-    except (ValueError, RecursionError):  # another reader says what is wrong
+    except (ValueError, RecursionError):  # another reader reports the problem
         return None
     kind = document.get("kind") if isinstance(document, dict) else None
     return RobotEstimate.load(path) if kind == KIND else None
 
 
 def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The options of a robot; refuse what holds for one joint only, before the work."""
+    """Return the options of a robot. Refuse options that are valid for one joint only, before the work."""
     from jointid.robot.options import RobotFitOptions
 
     options, own = stated_options(arguments), options_of(RobotFitOptions)

@@ -1,4 +1,4 @@
-"""`jointid info` of a log of several joints: a line for each joint."""
+"""Command `jointid info` for a log of several joints: one line for each joint."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _HEADS = {_SCALE: "× URDF's weight", _CONSTANT: "torque constant [N·m/A]"}
 
 
 def several_of(arguments: argparse.Namespace) -> bool:
-    """Whether the command is about several joints: it says so, or the file holds several and it names none."""
+    """Return whether the command is about several joints: by its options, or because the file has several."""
     wanted = joints_wanted(arguments)
     if arguments.robot is not None or (wanted is not None and len(wanted) != 1):
         return True
@@ -38,12 +38,12 @@ def several_of(arguments: argparse.Namespace) -> bool:
         )
         table, columns = as_stated(table, reading["sample_period"], reading["columns"])
         return len(several_joints(table, columns)) > 1
-    except InputError:  # what reads the file as one joint says it
+    except InputError:  # the reader for one joint reports the error
         return False
 
 
 def show_robot(arguments: argparse.Namespace) -> None:
-    """Print what the log holds, a line for each joint."""
+    """Print the content of the log, one line for each joint."""
     recordings = _recordings(arguments)
     whole = recordings[0]
     scales, not_weighed = _scales(arguments, whole)
@@ -68,7 +68,7 @@ def show_robot(arguments: argparse.Namespace) -> None:
 
 
 def _recordings(arguments: argparse.Namespace) -> list[RobotRecording]:
-    """The joints on one clock, then each of the others."""
+    """Return the joints on one clock, then each of the others."""
     from jointid.recording.readers.loading_robot import load_robot
 
     how = how_to_read(arguments)
@@ -85,7 +85,7 @@ def _recordings(arguments: argparse.Namespace) -> list[RobotRecording]:
 def _scales(
     arguments: argparse.Namespace, recording: RobotRecording
 ) -> tuple[dict[str, float | None], list[str]]:
-    """How much each torque is of what the URDF's links weigh, by the log's names, or a remark why that is not known."""
+    """Return each torque over the weight of the URDF's links, by the log's names, or a remark why it is not known."""
     if arguments.robot is None:
         return {}, []
     from jointid.cli.wording import Wording
@@ -96,7 +96,7 @@ def _scales(
     try:
         found = weight_scales(recording, robot)
         columns = robot.columns_of(recording)
-    except InputError as error:  # the table does not need it
+    except InputError as error:  # the table does not need this
         return {}, [f"not compared with the links' weight: {Wording.of(arguments).of_error(error)}"]
     names = [recording.names[k] for k in columns]
     return {each: found[name] for each, name in zip(names, robot.names, strict=True)}, []
@@ -129,7 +129,7 @@ def _of_joint(robot: RobotRecording, name: str, scale: float | None) -> dict[str
 
 
 def _signs(recording: Recording, drive: str) -> str:
-    """Whether a torque has both signs; noise about 0 is none."""
+    """Return the signs of a torque; noise about 0 does not count."""
     from jointid.problem.magnitude import is_one_sided
 
     values = getattr(recording, drive)
@@ -142,7 +142,7 @@ def _signs(recording: Recording, drive: str) -> str:
 
 
 def _weighed(scale: float | None, *, by_current: bool) -> dict[str, float | None]:
-    """A torque over what the links need; of a current how much torque an ampere makes by their weight."""
+    """Return the torque over the links' weight; for a current, the torque constant from the weight."""
     of_current = 1.0 / scale if scale and by_current else None
     values = {_SCALE: None if by_current else scale, _CONSTANT: of_current}
     return {key: None if each is None else float(f"{each:.3g}") for key, each in values.items()}
@@ -176,7 +176,7 @@ def _range(facts: dict[str, Any]) -> str:
 
 
 def _remarks(robot: RobotRecording) -> list[str]:
-    """What is worth knowing about how the file was read."""
+    """Return remarks on the reading of the file."""
     from jointid.recording.file_remarks import remarks
 
     assumed = robot.metadata.get("assumed_units")

@@ -1,4 +1,4 @@
-"""One command run to its exit code, whatever ends it."""
+"""Run of one command, up to its exit code, whatever ends it."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from jointid.base.interruption import INTERRUPTED, raise_on_interruption
 from jointid.cli.command_table import runner_of
 from jointid.cli.exit_codes import BAD_INPUT, BUG, DONE
 
-# Errors of a disk, which name no file when they are raised by a write.
+# Errors of a disk. They name no file if a write raises them.
 _DISK = {errno.ENOSPC, errno.EIO, errno.EROFS, errno.EFBIG, getattr(errno, "EDQUOT", -1)}
 
 
 def run_command(arguments: argparse.Namespace) -> int:
-    """Run the command of a command line that was read.
+    """Run the command of a parsed command line.
 
     Returns
     -------
     int
-        The exit code.
+        Exit code.
     """
     try:
         from jointid.cli.outputs import check_distinct
 
         run = runner_of(arguments.command)
-        import_module("numpy")  # every command needs it, and it makes another error of Ctrl-C
+        import_module("numpy")  # every command needs it; its import hides Ctrl-C in another error
         raise_on_interruption()
         check_distinct(arguments)
         code = run(arguments)
@@ -45,7 +45,7 @@ def run_command(arguments: argparse.Namespace) -> int:
         return BAD_INPUT
     except Exception as error:
         if isinstance(error, BrokenPipeError) and _reader_left():
-            sys.stderr.close()  # the reader of our output left: not our failure
+            sys.stderr.close()  # the reader of the output has ended; this is no failure
             return DONE
         if isinstance(error, OSError) and (error.filename is not None or error.errno in _DISK):
             reason = error.strerror or str(error)
@@ -66,10 +66,10 @@ def run_command(arguments: argparse.Namespace) -> int:
 
 
 def _reader_left() -> bool:
-    """Whether it is our own output that nobody reads any more, not another pipe."""
+    """Return whether the reader of our own output has ended, and not that of another pipe."""
     try:
         pipe = select.poll()
         pipe.register(sys.stdout.fileno(), select.POLLERR)
         return any(event & select.POLLERR for _, event in pipe.poll(0))
-    except (AttributeError, OSError, ValueError):  # no poll on this system; no file behind stdout
+    except (AttributeError, OSError, ValueError):  # no poll on this system, or stdout is no file
         return True

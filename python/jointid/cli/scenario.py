@@ -1,4 +1,4 @@
-"""A scenario from the command line: controller, trajectory, sensors."""
+"""Scenario from the command line: controller, trajectory, sensors."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ TRAJECTORIES = ("thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 
 
 def scenario_arguments(command: argparse.ArgumentParser) -> None:
-    """Add the options that make a scenario of a joint."""
+    """Add the options for a joint's scenario."""
     command.add_argument(
         "--controller",
         default="adaptive_robust",
@@ -65,12 +65,12 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
 
 
 def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
-    """The scenario of a joint file and these arguments.
+    """Return the scenario of a joint file and these arguments.
 
     Raises
     ------
     InputError
-        Something that cannot be used.
+        A value cannot be used.
     """
     from jointid.joint.joint import Joint
     from jointid.simulation.scenario import Scenario
@@ -101,12 +101,12 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
 
 
 def controller_of(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
-    """A controller from its name and the texts of its gains.
+    """Return a controller from its name and the texts of its gains.
 
     Raises
     ------
     InputError
-        No such controller or gain, or one that it needs is missing.
+        The controller or a gain does not exist, or a required gain is missing.
     """
     from jointid.joint.checks import suggestion
 
@@ -127,12 +127,12 @@ def controller_of(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
 
 
 def sensors_of(pairs: Sequence[tuple[str, str]]) -> Sensors:
-    """Sensors from the texts of their properties.
+    """Return sensors from the texts of their properties.
 
     Raises
     ------
     InputError
-        No such property, or a value that it cannot have.
+        A property does not exist, or its value is not possible.
     """
     from jointid._core import Sensors
 
@@ -140,12 +140,12 @@ def sensors_of(pairs: Sequence[tuple[str, str]]) -> Sensors:
 
 
 def trajectory_of(text: str) -> Trajectory:
-    """A trajectory from its name and options, or from the file of a motion or a recording.
+    """Return a trajectory from its name and options, or from the file of a motion or a recording.
 
     Raises
     ------
     InputError
-        No such trajectory, option or file.
+        The trajectory, an option or the file does not exist.
     """
     from jointid.recording.readers.loading import load
     from jointid.simulation.motion_file import load_motion
@@ -194,7 +194,7 @@ def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str
 
     for name, value in chosen.items():
         if name not in known:
-            close = closest(name, [*known], cutoff=0.75)  # below it is another thing's name
+            close = closest(name, [*known], cutoff=0.75)  # a lower cutoff matches unrelated names
             raise InputError(
                 f"there is no {name}; "
                 + (f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"),
@@ -206,7 +206,7 @@ def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str
 def checked_values(
     argument: str, pairs: Sequence[tuple[str, str]], usual: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Values of the same kinds as the default ones."""
+    """Return values of the same types as the defaults."""
     chosen = _values(argument, pairs)
     _check_names(argument, chosen, usual)
     for name, value in chosen.items():
@@ -222,7 +222,7 @@ def checked_values(
 
 
 def _values(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
-    """Numbers, angles such as 60deg, true and false, texts."""
+    """Return the values: numbers, angles such as 60deg, true and false, texts."""
     return {
         name: {"true": True, "false": False}.get(text, number_or_angle(text))
         for name, text in by_name(argument, pairs).items()
@@ -230,7 +230,7 @@ def _values(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str, Any]:
 
 
 def number_or_angle(text: str) -> Any:
-    """An int, a float, an angle such as 60deg in [rad], else the text."""
+    """Return an int, a float, an angle such as 60deg in [rad], or the text itself."""
     degrees = number_or_text(text.removesuffix("deg"))
     if text.endswith("deg") and not isinstance(degrees, str):
         return math.radians(degrees)

@@ -1,4 +1,4 @@
-"""`jointid identify` of a joint file whose drive's input is a voltage: a servo, from a list or folder of runs."""
+"""Command `jointid identify` for a servo: the drive's input is a voltage, and the runs are files or folders."""
 
 from __future__ import annotations
 
@@ -24,24 +24,24 @@ if TYPE_CHECKING:
     from jointid.joint.voltage_drive import VoltageDrive
     from jointid.recording.recording import Recording
 
-# Options of a joint whose torque is known.
+# Options that need a known torque.
 _OF_TORQUE = (
     *("checkpoint", "resume", "selftest", "bootstrap", "causes", "population", "generations"),
     "terms",
 )
-# By option of `identify`: what it is called of a servo.
+# For each option of `identify`: its name for a servo.
 _OF_SERVOS = {"windows": "window", "min_speed": "slowest", "parameters": "parameters"}
 
 
 def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
-    """Identify a servo from its runs, and say how far its closed loop ends from them if that is asked.
+    """Identify a servo from its runs. With --rollout, compare its simulated closed loop with them.
 
     Parameters
     ----------
     arguments : Namespace
         Arguments of `jointid identify`.
     joint : Joint
-        With a voltage drive.
+        Joint with a voltage drive.
     """
     from jointid.report.saving import save_report
     from jointid.servo.answers import answer
@@ -54,7 +54,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     assert drive is not None
     values = options.pop("parameters", {})
     runs = _load(arguments, drive)
-    joint = joint_of(arguments, joint, runs) or joint  # with the facts that options state
+    joint = joint_of(arguments, joint, runs) or joint  # with the facts from options
     joint = joint.replace(parameters=_fixed(joint, values))
     found = identify_servo(
         runs, joint, model=with_terms(arguments.model, arguments), seed=arguments.seed, **options
@@ -83,7 +83,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
 
 
 def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
-    """The options of a servo; refuse what one without a torque signal does not have, before the work."""
+    """Return the options of a servo. Refuse options that need a torque signal, before the work."""
     options = stated_options(arguments)
     stated = (name for name in _OF_TORQUE if getattr(arguments, name) not in (None, False))
     for name in (*stated, *(name for name in options if name not in _OF_SERVOS)):
@@ -144,7 +144,7 @@ def _load(arguments: argparse.Namespace, drive: VoltageDrive) -> list[Recording]
 
 
 def _of_all_runs(error: InputError) -> InputError:
-    """An error about a file of several runs: all of them are one fit, which one run is too little for."""
+    """Return an error about a file of several runs. All runs are one fit; a single run is not sufficient."""
     every = [
         replace(each, function="identify")
         for each in error.remedy
@@ -162,7 +162,7 @@ def _of_all_runs(error: InputError) -> InputError:
 
 
 def _files(paths: Sequence[Path]) -> list[Path]:
-    """Return the files, and those in folders, in the order of their names."""
+    """Return the files, and those in folders, sorted by name."""
     from jointid.recording.readers.registry import endings
 
     found: list[Path] = []
@@ -171,7 +171,7 @@ def _files(paths: Sequence[Path]) -> list[Path]:
             found.append(path)
             continue
         inside = sorted(each for each in path.iterdir() if each.name.endswith(endings()))
-        # A .json file beside other recordings is an estimate, or a logger's settings.
+        # A .json file next to other recordings is an estimate, or the settings of a logger.
         inside = [each for each in inside if each.suffix != ".json"] or inside
         if not inside:
             raise InputError("there is no recording in this folder", place=str(path))

@@ -1,4 +1,4 @@
-"""The command `run`: a joint on its bench or an emulated one, moved and identified in turn."""
+"""Command `run`: a joint on a real or emulated bench is moved and identified in turn."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from jointid.hardware.live.console import Observers
 
 STOPPED = 3
-"""Exit code when a limit, a fault or the user stopped a session, or it was refused."""
+"""Exit code if a limit, a fault or the user stopped a session, or if it was refused."""
 
 
 def add_run(run: argparse.ArgumentParser) -> None:
@@ -79,7 +79,7 @@ def add_run(run: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run and identify a joint on its bench in turn; returns the exit code."""
+    """Run and identify a joint on its bench in turn. Return the exit code."""
     from jointid.base.files import write_whole
     from jointid.cli.bench_settings import in_force
     from jointid.commissioning import commission
@@ -109,7 +109,7 @@ def run(arguments: argparse.Namespace) -> int:
             _say_passed(arguments, bench)
             return 0
         if not (arguments.emulate or arguments.yes):
-            with open_drive(bench):  # a bus that is not there is said before anybody is asked
+            with open_drive(bench):  # a missing bus is reported before the user is asked
                 pass
         if not (arguments.emulate or arguments.yes or _agreed(bench)):
             refused("run", "not_agreed", "not started", as_json=as_json)
@@ -128,7 +128,7 @@ def run(arguments: argparse.Namespace) -> int:
             )
     except SessionRefusedError as error:
         moved, off = motor_off_before(error)
-        if moved:  # it was a later run that was refused
+        if moved:  # a later run was refused
             stopped("preflight", str(error), off, output, as_json=as_json)
         else:
             refused("run", "preflight", str(error), as_json=as_json)
@@ -185,7 +185,7 @@ def _say_passed(arguments: argparse.Namespace, bench: Bench) -> None:
 
 
 def _check(arguments: argparse.Namespace) -> None:
-    """Before the joint moves: refuse outputs that cannot be written."""
+    """Refuse outputs that cannot be written, before the joint moves."""
     if arguments.cycles < 0:
         raise InputError("at least 0 is expected", argument="cycles", value=arguments.cycles)
     if arguments.cycles == 0 and arguments.save is not None:
@@ -215,7 +215,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 
 def _check_motion(arguments: argparse.Namespace) -> None:
-    """Refuse to copy a bench file to where the file of its motion is not."""
+    """Refuse to copy a bench file to a folder without its motion file."""
     from jointid.joint.joint_file import read_document
 
     save = arguments.save
@@ -232,7 +232,7 @@ def _check_motion(arguments: argparse.Namespace) -> None:
 
 
 def _observers(arguments: argparse.Namespace) -> Observers:
-    """A line on the console, a window; with an emulated joint only the window that was asked for."""
+    """Return a line on the console and a window; for an emulated joint only a requested window."""
     from jointid.hardware.live.console import ConsoleLine, Observers
     from jointid.hardware.live.plot import LivePlot
 
@@ -249,7 +249,7 @@ def _say(step: str) -> None:
 
 
 def _agreed(bench: Bench) -> bool:
-    """Whether the user agrees that the real joint moves."""
+    """Return whether the user agrees that the real joint moves."""
     low, high = bench.limits.position
     print(
         f"'{bench.joint.name}' will move between {low:.3g} and {high:.3g} rad with up to "
@@ -263,13 +263,13 @@ def _agreed(bench: Bench) -> bool:
 
 
 def _agreed_again(estimate: Estimate) -> bool:
-    """Whether the user agrees that the joint moves with the identified values."""
+    """Return whether the user agrees that the joint moves with the identified values."""
     print(Wording("run").of_answer(estimate, verbose=False), file=sys.stderr)
     return _yes("Move the joint with these values? Is the space free? [yes/no] ")
 
 
 def _yes(question: str) -> bool:
-    """Whether the user answers yes; the end of the input is a no."""
+    """Return whether the user answers yes; the end of the input means no."""
     try:
         return input(question).strip() == "yes"
     except EOFError:
@@ -277,7 +277,7 @@ def _yes(question: str) -> bool:
 
 
 def _write_page_of(error: Exception, folder: Path | None) -> None:
-    """Write the page of a session that was stopped, from what was recorded until then."""
+    """Write the page of a stopped session from the data recorded until then."""
     from jointid.report.saving import save_report
 
     result = vars(error).get("outcome")
@@ -285,20 +285,20 @@ def _write_page_of(error: Exception, folder: Path | None) -> None:
         return
     try:
         page = save_report(result, folder / "report.html", action=ADVICE.of_action)
-    except OSError as failure:  # as the recording, if that is why it was stopped
+    except OSError as failure:  # the cause may also have stopped the recording
         print(f"no report was written: {failure}", file=sys.stderr)
     else:
         print(f"report: {page}", file=sys.stderr)
 
 
 def _wording(arguments: argparse.Namespace, result: Commissioning, output: Path | None) -> Wording:
-    """The words of the command's advice: with its joint file, and the estimate that it wrote last."""
+    """Return the wording of the command's advice, with its joint file and its last written estimate."""
     saved = "ESTIMATE" if output is None else str(output / f"cycle_{len(result.estimates)}.json")
     return Wording("run", joint_file=str(arguments.joint), saved=saved)
 
 
 def _write(result: Commissioning, folder: Path, wording: Wording) -> None:
-    """The session's page, and its outcome as text and numbers."""
+    """Write the session's page, and its outcome as text and numbers."""
     from jointid.base.files import write_whole
     from jointid.report.saving import save_report
 

@@ -1,4 +1,4 @@
-"""The command `simulate`."""
+"""Command `simulate`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def add_simulate(simulate: argparse.ArgumentParser) -> None:
 
 
 def simulate(arguments: argparse.Namespace) -> None:
-    """Simulate a joint, and write the recording of its sensors."""
+    """Simulate a joint and write the recording of its sensors."""
     check_recording_file("output", arguments.output)
     scenario = scenario_of(arguments.joint, arguments)
     batch = scenario.simulate(arguments.seed)

@@ -1,4 +1,4 @@
-"""The command `sweep`."""
+"""Command `sweep`."""
 
 from __future__ import annotations
 
@@ -171,7 +171,7 @@ def sweep(arguments: argparse.Namespace) -> None:
 
 @contextmanager
 def _continuation(arguments: argparse.Namespace) -> Iterator[None]:
-    """Say of a sweep that ended early how many trials are done, and how to continue."""
+    """Report for a sweep that ended early how many trials are done, and how to continue."""
     from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError
 
     if arguments.output is None:
@@ -220,14 +220,14 @@ def _workers(count: int | None) -> Executor | nullcontext[None]:
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
-    # A fresh interpreter each: a fork of a process with threads may hang.
+    # Each one is a new interpreter, because a fork of a process with threads may hang.
     return ProcessPoolExecutor(
         count, mp_context=get_context("spawn"), initializer=_end_with_the_command
     )
 
 
 def _end_with_the_command() -> None:
-    """In a worker: end when the command is gone. One that is killed tells nobody, and workers wait for ever."""
+    """End a worker when its command has ended. A killed command sends no signal, and workers would wait forever."""
     from multiprocessing import parent_process
 
     command = parent_process()

@@ -1,6 +1,6 @@
-"""Text that fits a terminal: sentences break between words, wide tables into tables below each other.
+"""Text that fits a terminal: lines break between words, and wide tables become several tables.
 
-Nothing of it touches output that goes to a file or a pipe: programs read that.
+Output to a file or a pipe does not change, because programs read it.
 """
 
 from __future__ import annotations
@@ -12,24 +12,24 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import Any, TextIO
 
-_NARROWEST = 30  # columns: below it nothing is broken
+_NARROWEST = 30  # columns; on a narrower terminal no line is broken
 _GAP = "  "  # between two columns of a table
-_LABEL = 26  # characters of a label, at most, in front of a text in a column of its own
+_LABEL = 26  # largest length of a label before a text in its own column
 _MARKUP = re.compile(r"\033\[[0-9;?]*[A-Za-z]")
 _RULE = re.compile(r"-+(?:  -+)+")
-# An option stays with its value, so that what is advised can be pasted, and a number with its error and its unit.
+# An option stays with its value, so that advice can be pasted. A number stays with its error and its unit.
 _WORD = re.compile(
     r"--[a-z][a-z-]*[ ](?:'[^']*'|(?!--)[^\s]+)"
     r"|\(?(?:\S+ ± )?[±+−-]?\d\S*(?: (?:%|ms|s|m|rad|deg|Hz|kg|N|kg·m²|N·m|rad/s)(?![^\s,;:.)])[,;:.)]*)?"
     r"|\S+"
 )
-_NOTE = re.compile(r" {3,}\(.*\)$")  # behind an example
-# Not "jointid identify: ..." and "jointid estimate — ...", which are sentences and titles.
+_NOTE = re.compile(r" {3,}\(.*\)$")  # after an example
+# But not "jointid identify: ..." and "jointid estimate — ...", which are sentences and titles.
 _COMMAND = re.compile(r"(?:next: |# )?jointid [a-z][a-z-]*(?![a-z:-]| —)|(?:\w+=\S+ )?pip install ")
 
 
 def fit_streams() -> None:
-    """Let what is printed fit the terminal, where standard output or standard error is one."""
+    """Fit printed text to the terminal, if standard output or standard error is one."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is not None and not isinstance(stream, Fitted) and stream.isatty():
@@ -39,7 +39,7 @@ def fit_streams() -> None:
 
 
 def columns_of(stream: Any) -> int:
-    """Return the columns of a stream's terminal, or those of the variable COLUMNS; 0 where neither says them."""
+    """Return the width of a stream's terminal, or the variable COLUMNS; 0 without both."""
     try:
         return int(os.environ.get("COLUMNS", 0)) or os.get_terminal_size(stream.fileno()).columns
     except (OSError, ValueError, AttributeError):
@@ -47,7 +47,7 @@ def columns_of(stream: Any) -> int:
 
 
 class Fitted:
-    """A terminal's stream that breaks what is wider than the terminal.
+    """Stream of a terminal that breaks lines wider than the terminal.
 
     Parameters
     ----------
@@ -56,14 +56,14 @@ class Fitted:
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
-        self._begun = ""  # a line without its end
+        self._begun = ""  # a line that is not complete
         self._held: list[str] = []  # lines that may be a table
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._stream, name)
 
     def write(self, text: str) -> int:
-        """Write whole lines as they fit; what moves the cursor, such as a progress bar, goes through."""
+        """Write complete lines so that they fit. Text that moves the cursor, such as a progress bar, is not changed."""
         if "\r" in text or "\033[K" in text:
             self.flush()
             self._stream.write(text)
@@ -74,12 +74,12 @@ class Fitted:
         return len(text)
 
     def writelines(self, lines: Sequence[str]) -> None:
-        """Write some texts, one after the other."""
+        """Write several texts in order."""
         for line in lines:
             self.write(line)
 
     def flush(self) -> None:
-        """Write what was held back."""
+        """Write the held lines."""
         self._release()
         if self._begun:
             self._stream.write(self._begun)
@@ -91,7 +91,7 @@ class Fitted:
             self._release()
         if len(self._held) > 1 and not _is_row(line, self._held[1]):
             self._release()
-        if self._held or _GAP in line.strip():  # the head of a table, perhaps
+        if self._held or _GAP in line.strip():  # possibly the header of a table
             self._held.append(line)
         else:
             self._put([line])
@@ -109,9 +109,9 @@ class Fitted:
 
 
 def broken(line: str, width: int) -> Iterator[str]:
-    """Yield a line in parts that fit; a word longer than a line stays whole.
+    """Yield a line in parts that fit. A word longer than a line is not broken.
 
-    Further parts stand below the text, behind its label or its mark; a command continues as a shell reads it.
+    Further parts are below the text, after its label or mark. A command continues with a backslash, as in a shell.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def broken(line: str, width: int) -> Iterator[str]:
         return
     indent = _indent(line)
     command = _COMMAND.match(line.strip()) is not None
-    room = width - 2 * command  # for the mark that a line goes on
+    room = width - 2 * command  # for the backslash
     part = line[: len(line) - len(line.lstrip())]
     begun = False
     position = len(part)
@@ -144,7 +144,7 @@ def broken(line: str, width: int) -> Iterator[str]:
 
 
 def _indent(line: str) -> int:
-    """Where the further parts of a line begin."""
+    """Return the indentation of the further parts of a line."""
     lead = len(line) - len(line.lstrip())
     label = re.match(r"\s*\S+(?: \S+){0,3}?\s{2,}(?=\S)", line)
     if label is not None and label.end() <= _LABEL + lead:
@@ -161,13 +161,13 @@ def _spans(rule: str) -> list[tuple[int, int]]:
 
 
 def _is_row(line: str, rule: str) -> bool:
-    """Whether a line below a table's rule keeps to its columns."""
+    """Return whether a line below a table's rule fits its columns."""
     gaps = [line[end : end + len(_GAP)] for _, end in _spans(rule)[:-1]]
     return bool(line.strip()) and not "".join(gaps).strip()
 
 
 def _table(lines: Sequence[str], width: int) -> Iterator[str]:
-    """Yield a table; a table that is too wide becomes several, each with the first column and no empty one."""
+    """Yield a table. A table that is too wide becomes several, each with the first column, without empty columns."""
     spans = _spans(lines[1])
     if width < _NARROWEST or max(map(_length, lines)) <= width:
         yield from lines
@@ -188,7 +188,7 @@ def _table(lines: Sequence[str], width: int) -> Iterator[str]:
 
 
 def _groups(sizes: Sequence[int], width: int) -> Iterator[list[int]]:
-    """Yield the columns of each table: the first one in all, then as many as fit."""
+    """Yield the columns of each table: the first one in all, then the number that fits."""
     group = [0]
     for k in range(1, len(sizes)):
         if len(group) > 1 and sum(sizes[j] + len(_GAP) for j in group) + sizes[k] > width:
@@ -199,7 +199,7 @@ def _groups(sizes: Sequence[int], width: int) -> Iterator[list[int]]:
 
 
 def _row(cells: Sequence[str], sizes: Sequence[int], width: int) -> Iterator[str]:
-    """Yield a row; a last cell that is too wide continues below itself."""
+    """Yield a row. A last cell that is too wide continues below itself."""
     padded = [cell.ljust(size) for cell, size in zip(cells[:-1], sizes[:-1], strict=True)]
     head = _GAP.join([*padded, ""])
     room = width - len(head)

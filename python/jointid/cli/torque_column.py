@@ -1,4 +1,4 @@
-"""What is advised for a log without a header of torque: the column that may hold it, or that it is a servo's."""
+"""Advice for a log without a header of torque: a column that may be the torque, or a servo's log."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from jointid.cli.values import behind_option
 
 
 def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
-    """The call with a column that may hold the torque; None where none does, or where joints have names.
+    """Return the call with a column that may be the torque; None without one, or if the joints have names.
 
     Parameters
     ----------
     path : Path
     reading : mapping
-        Arguments of `load`, with what is advised so far.
+        Arguments of `load`, including earlier advice.
 
     Raises
     ------
     InputError
-        The log has a duty or a voltage in place of a torque: it is a servo's.
+        The log has a duty or a voltage instead of a torque: it is from a servo.
     """
     from jointid.recording.column_lookup import column_index
     from jointid.recording.even_rows import as_stated
@@ -33,7 +33,7 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
     from jointid.recording.readers.loading import table_of
     from jointid.recording.signals import header_unit
 
-    if reading["joint"] is not None:  # the headers of several joints say whose torque it is
+    if reading["joint"] is not None:  # the headers of several joints name the joint of each torque
         return None
     parts = {name: reading[name] for name in ("topic", "group", "unpacked")}
     table = table_of(path, **parts)
@@ -50,7 +50,7 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
     name = header if table.headers.count(header) == 1 else index
     unit, quantity = understood(header).unit, quantity_of(header)
     volts = unit is not None and unit.dimension == "voltage"
-    if quantity and not volts:  # what its header states is not asked for
+    if quantity and not volts:  # if the header states the unit, it is not requested
         call: dict[str, Any] = {"columns": {quantity: name}}
         units = {} if unit else {"units": {quantity: header_unit(quantity, "revolute")}}
         return Action("call", call | units, "" if unit else "with the unit that it has", "load")
@@ -63,7 +63,7 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
 
 
 def _of_servo(path: Path, header: str, where: Mapping[str, Any] | None) -> InputError:
-    """What is said of a log without a torque: a duty times a factor is none, for back-EMF brakes, too."""
+    """Return the error about a servo's log. A duty times a factor is no torque, because back-EMF brakes, too."""
     runs = f" --by {behind_option(next(iter(where)))}" if where else ""
     return InputError(
         f"the log has no torque: its column '{header}' is the duty or voltage of a servo, which is no torque",

@@ -1,4 +1,4 @@
-"""Values as text: in a sentence, behind an option, in a joint file."""
+"""Values as text: in a sentence, as an option's value, in a joint file."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ _SPECIAL = r"[\s'\"\\$`&|;<>()*?\[\]{}!#~]"
 
 
 def in_sentence(value: object) -> str:
-    """A value as a sentence shows it: no braces, `none`, `true`, `2, 4`.
+    """Return a value as text for a sentence: no braces, `none`, `true`, `2, 4`.
 
-    A text is quoted only where it looks like a number or a flag: the quotes are then the fault.
+    A text is quoted only if it looks like a number or a flag, because the quotes are then the error.
     """
     if isinstance(value, list | tuple):
         return as_typed(", ".join(_distinct(entry) for entry in value))
@@ -25,20 +25,20 @@ def in_sentence(value: object) -> str:
 
 
 def as_typed(value: object) -> str:
-    """A value as it was typed behind an option, on one line and not too long."""
+    """Return a value as it was typed after an option, on one line and not too long."""
     text = " ".join(_text(value, ", ").split())
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 1]}…"
 
 
 def _distinct(value: object) -> str:
-    """A value's text, with quotes where it would be taken for a value of another kind."""
+    """Return a value's text, with quotes if it looks like a value of another type."""
     if isinstance(value, str) and re.fullmatch(_OTHER_KIND, value):
         return f'"{value}"'
     return _text(value, " " if isinstance(value, list | tuple) else ", ")
 
 
 def behind_option(value: object) -> str:
-    """A value as the shell and the command line read it."""
+    """Return a value as text for the shell and the command line."""
     text = _text(value, ",")
     if text and not re.search(_SPECIAL, text):
         return text
@@ -47,14 +47,14 @@ def behind_option(value: object) -> str:
 
 
 def in_joint_file(value: Any) -> str:
-    """A value as TOML writes it."""
+    """Return a value as TOML text."""
     if isinstance(value, list | tuple):
         return f"[{', '.join(in_joint_file(entry) for entry in value)}]"
     return f'"{value}"' if isinstance(value, str) else _text(value, ", ")
 
 
 def _text(value: Any, separator: str) -> str:
-    if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:  # a number of numpy's
+    if hasattr(value, "dtype") and getattr(value, "ndim", 1) == 0:  # a NumPy number
         value = value.item()
     if value is ...:
         return "VALUE"

@@ -1,4 +1,4 @@
-"""Errors and findings in the words of a command: its options instead of Python's arguments."""
+"""Errors and findings in the words of a command, with its options instead of Python's arguments."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ _OWN_FILE = r"\.(?:toml|json|jsonl)\b"
 
 @dataclass(frozen=True, slots=True)
 class Wording:
-    """How one command words a value.
+    """Wording of one command.
 
     Parameters
     ----------
     command : str
-        "identify", "compare", …
+        Name of the command: "identify", "compare", …
     model : str
-        The one model that the command was called with. Default: none, or several.
+        Model of the command line, if it has exactly one. Default: none or several.
     grid : frozenset of str
         Settings that ``--grid`` names. Default: none.
     joint_file : str
-        The joint file that the command reads. Default: it reads none.
+        Joint file that the command reads. Default: none.
     saved : str
-        The .json file that the command saves its estimate to. Default: it saves none.
+        File (.json) in which the command saves its estimate. Default: none.
     typed : tuple of str
-        The words of the command line, the command first. Default: not known.
+        Words of the command line, the command first. Default: not known.
     facts : str
-        The file with the facts of a robot. Default: there is none.
+        File with the facts of a robot. Default: none.
     joint : str
-        The joint that is spoken of, of several in one file. Default: there is one.
+        Name of the joint, if the file has several. Default: the file has one.
     """
 
     command: str
@@ -57,7 +57,7 @@ class Wording:
 
     @classmethod
     def of(cls, arguments: argparse.Namespace) -> Wording:
-        """The wording for a command line that was read."""
+        """Return the wording for a parsed command line."""
         from jointid.cli.outputs import estimate_file
 
         models = getattr(arguments, "models", None) or [getattr(arguments, "model", None)]
@@ -74,12 +74,12 @@ class Wording:
 
     @property
     def saved_file(self) -> str:
-        """The file of the estimate, empty where none is written."""
+        """Return the file of the estimate; empty if none is written."""
         return "" if self.saved == "ESTIMATE" else self.saved
 
     def of_error(self, error: InputError) -> str:
-        """An error in one line: where, what, why, and what to do."""
-        if type(error).__str__ is not InputError.__str__:  # it words itself
+        """Return an error in one line: place, subject, reason, and remedy."""
+        if type(error).__str__ is not InputError.__str__:  # it has its own text
             return " ".join(str(error).split())
         place, name = self._located(error)
         subject = self._subject(place, name, error.value)
@@ -88,7 +88,7 @@ class Wording:
         return on_one_line(" ".join(f"{sentence}{f'; {remedies}' if remedies else ''}".split()))
 
     def of_action(self, action: Action) -> str:
-        """What to do, with the command's options; empty if the command line cannot do it."""
+        """Return the advice with the command's options; empty if the command line cannot follow it."""
         if action.designs:
             from jointid.cli.next_motion import words_of_next_motion
 
@@ -103,7 +103,7 @@ class Wording:
         return words.replace("the joint file", self.joint_file)
 
     def of_command(self, action: Action) -> str:
-        """One command that runs as it stands, or one plain act."""
+        """Return one command that can be pasted, or one plain action."""
         if action.designs:
             return self._recording(action)
         named = self.joint_file != "the joint file"
@@ -113,7 +113,7 @@ class Wording:
         return f"{action.kind} {action.text}"
 
     def _recording(self, action: Action) -> str:
-        """How to get another motion: designed after the saved estimate, where that needs no more of the user."""
+        """Return the advice to record another motion: from the saved estimate, if the user needs to add nothing."""
         from jointid.cli.next_motion import runs_as_printed
 
         if not self.saved_file or not runs_as_printed(action):
@@ -123,7 +123,7 @@ class Wording:
         return f"jointid {shlex.join(words)}"
 
     def of_answer(self, estimate: Estimate, *, verbose: bool) -> str:
-        """An estimate in a few lines, or all of its report, with commands as advice."""
+        """Return an estimate in a few lines, or its complete report, with commands as advice."""
         from jointid.estimate.answers import answer
         from jointid.estimate.tables import text_report
 
@@ -133,11 +133,11 @@ class Wording:
 
     def _alternatives(self, remedies: tuple[str | Action, ...]) -> str:
         texts = [each if isinstance(each, str) else self.of_action(each) for each in remedies]
-        options = any(isinstance(each, Action) for each in remedies)  # each is pasted by itself
+        options = any(isinstance(each, Action) for each in remedies)  # each one is pasted alone
         return ("; or " if options else " or ").join(text for text in texts if text)
 
     def _located(self, error: InputError) -> tuple[str, str]:
-        """Where it stands and what it is about; a place that has an option is part of the name."""
+        """Return the place and the subject of an error. A place with an option is part of the name."""
         place, name = error.place, error.argument
         options = OPTIONS.get(self.command, {})
         parameter = place.removeprefix("parameter '").removesuffix("'")
@@ -148,7 +148,7 @@ class Wording:
         return place, name
 
     def _subject(self, place: str, name: str, value: Any) -> str:
-        """What cannot be used: an option with its value, a key of a file, or a plain name."""
+        """Return the subject that cannot be used: an option with its value, a key of a file, or a plain name."""
         known = value is not NOT_GIVEN
         if not name:
             return in_sentence(value) if known else ""
@@ -163,7 +163,7 @@ class Wording:
         return f"{name} is {in_sentence(value)}" if known else name
 
     def _in_model(self, name: str) -> str:
-        """The model as it was typed, and which of its options is meant, if it is one of those."""
+        """Return the model as it was typed, and the affected option of the model, if any."""
         field = name.removeprefix("model.")
         stated = re.split("[:=]", self.model)
         if not self.model or "model" not in OPTIONS.get(self.command, {}):
@@ -174,11 +174,11 @@ class Wording:
 
 
 ADVICE = Wording("identify")
-"""For pages: what a finding advises is done by identifying again."""
+"""Wording for pages: advice is followed by a new identification."""
 
 
 def _typed(option: str, key: str, value: Any) -> str:
-    """An option as the user typed it, so far as that is known."""
+    """Return an option as the user typed it, as far as known."""
     if option in PLACEHOLDERS and not key:
         if isinstance(value, str):  # only the name behind the option
             return f"{option} {as_typed(value)}"
