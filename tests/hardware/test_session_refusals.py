@@ -81,7 +81,7 @@ CASES: dict[str, tuple[Prepare, str]] = {
         fast_at_the_edge,
         r"too fast near the edge of the window: .* would stop at .* outside -0\.5000 to 0\.5000 rad",
     ),
-    "torque beyond": (open_loop, "asks for 170 N·m, more than 160 N·m"),
+    "torque beyond": (open_loop, "needs 170 N·m, more than 160 N·m"),
     "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8 A"),
     "unit mode": (with_elmo(fixed_unit_mode=5), "is in unit mode 5, not in torque mode"),
     "failure latched": (

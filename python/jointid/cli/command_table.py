@@ -41,7 +41,7 @@ _TABLE = {
         "jointid.cli.designs:design",
     ),
     "check": (
-        "show which drive is connected, how it is set, and what differs from the joint file",
+        "show the connected drive, its settings, and the differences from the joint file",
         "jointid.cli.proof:add_check",
         "jointid.cli.proof:check",
     ),
@@ -76,7 +76,7 @@ _TABLE = {
         "jointid.cli.app:serve_page",
     ),
     "explain": (
-        "say what a finding means, and what to do about it",
+        "show the meaning of a finding, and its remedy",
         "jointid.cli.explaining:add_explain",
         "jointid.cli.explaining:explain",
     ),

@@ -31,7 +31,7 @@ def add_design(design: CommandParser) -> None:
         "  jointid design --after estimate.json --output motion.toml\n"
         "  jointid design joint.toml --parameter sensor_gain --sensor torque_noise=0.5 --plot motion.png\n"
         "the joint file needs a value or bounds for each parameter; its table [session], if there is one,\n"
-        'says the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
+        'gives the controller, the period, the encoder and the limits, and takes the motion as file = "motion.toml"'
     )
     verbose_argument(design)
     design.add_argument(

@@ -14,7 +14,7 @@ REFUSED, STOPPED, DONE = "refused", "stopped", "done"
 _MOTOR = {
     True: "the motor was seen off",
     False: "THE MOTOR WAS NOT SEEN OFF",
-    None: "this drive cannot be asked whether its motor is off",
+    None: "this drive does not report whether its motor is off",
 }
 _NEVER_ON = "the motor has not been on"
 

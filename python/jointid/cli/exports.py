@@ -26,7 +26,7 @@ def add_export(export: argparse.ArgumentParser) -> None:
         "  jointid export estimate.json --to joint_friction.h\n"
         "  jointid export joint.toml --to joint.st\n"
         "  jointid export estimate.json --to arm.xml --into arm.xml --joint-name shoulder --approximate\n"
-        "the estimate (.json) knows how certain its values are, and the file says so; a joint file does not"
+        "an estimate (.json) contains the standard errors, and the file states them; a joint file has none"
     )
     export.add_argument(
         "source",

@@ -48,8 +48,8 @@ def add_identify(identify: CommandParser) -> None:
         "--model",
         metavar="NAME[:OPTION[=VALUE]]",
         help=(
-            f"friction model: {', '.join(model_names())}, or auto (default if the joint has no model): of the first "
-            "two, with or without gravity, the best on held-out torque; options follow, as in "
+            f"friction model: {', '.join(model_names())}, or auto (default if the joint has no model): the best on "
+            "held-out torque among the first two, with or without gravity; options follow, as in "
             "stribeck:asymmetric:ripple=2,4; with --robot also JOINT[,JOINT...]=MODEL, several divided by a semicolon"
         ),
     )
@@ -128,7 +128,7 @@ def add_compare(compare: CommandParser) -> None:
         "  jointid compare run.csv --model stribeck --model stribeck:ripple=2 --folds 8 --json\n"
         "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
         "  jointid compare arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)\n"
-        "one recording is cut into blocks; of several, whole recordings are held out"
+        "one recording is cut into blocks; with several recordings, whole recordings are held out"
     )
     several_recordings(compare)
     _identification_arguments(compare)

@@ -32,7 +32,7 @@ def fact_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--torque-constant",
         metavar="VALUE[,VALUE...]",
-        help="torque constant of the motor [N·m/A], for a recorded current; of several joints one for each",
+        help="torque constant of the motor [N·m/A], for a recorded current; for several joints, one for each",
     )
     for option, explanation in (
         ("--rotor-inertia", "inertia of the motor and all that turns with it, motor side [kg·m²]"),

@@ -40,7 +40,7 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
         "  jointid first-motion joint.toml\n"
         "  jointid first-motion joint.toml --unknown-friction --largest-torque 20\n"
         "a real bench that passes gets the certificate that `jointid run` needs, next to the joint file.\n"
-        "First read docs/safety.md, and run `jointid check`: it says how far the joint will move,\n"
+        "First read docs/safety.md, and run `jointid check`: it shows how far the joint will move,\n"
         "0.4°, or 40 counts of a coarse encoder. Exit code 3: the bench is refused."
     )
     _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")
@@ -59,7 +59,7 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
     first.add_argument(
         "--watchdog",
         action="store_true",
-        help="at the end, stop sending at zero torque: the drive must stop its motor by itself",
+        help="at the end, stop sending at zero torque; the drive must then stop its motor",
     )
     first.add_argument("--quiet", action="store_true", help="print no line for each step")
 
@@ -188,7 +188,7 @@ def missing_certificate(joint_file: Path, bench: Bench) -> str:
                     drive.disable()
                     drive.close()
         except (DriveFaultError, OSError) as error:
-            return f"the drive does not say who it is: {error}"
+            return f"the drive does not report its identity: {error}"
     if not objections:
         for note in notes:
             print(f"jointid run: note: {note}", file=sys.stderr)

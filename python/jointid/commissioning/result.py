@@ -66,7 +66,7 @@ class Commissioning(Result):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary that a report page shows."""
         from jointid.estimate.overview import made_by, quantity_of
 
         estimate = self.estimates[-1] if self.estimates else None

@@ -212,7 +212,7 @@ def _check_network(channel: str, bitrate: int, data_bitrate: int | None) -> None
             "the network is down",
             argument="channel",
             value=channel,
-            remedy=f"bring it up with `{up}`",
+            remedy=f"start it with `{up}`",
         )
     size = _NETWORKS / channel / "mtu"
     if data_bitrate is not None and size.is_file() and int(size.read_text()) < _FD_SIZE:

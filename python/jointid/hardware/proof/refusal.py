@@ -21,7 +21,7 @@ REASONS = {
     "too_far": "the joint went farther than a first motion may",
     "too_fast": "the joint went faster than a first motion may",
     "control": "a small slow motion under control failed",
-    "watchdog": "the drive did not switch its motor off by itself when the host fell silent",
+    "watchdog": "the drive did not switch its motor off when the host stopped sending",
     "too_long": "the motor was on for longer than a first motion may last",
     "user": "stopped by the user",
 }

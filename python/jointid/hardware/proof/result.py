@@ -19,7 +19,7 @@ UNCHECKED = {
     "the joint file to check them with",
     "inertia": "the joint's inertia: the joint file states none to check it with, or it could not be measured",
     "sensor_sign": "the sign of the torque sensor: it shows too little of the joint's acceleration",
-    "watchdog": "that the drive stops by itself when the host is gone: test it with --watchdog, or pull the plug once",
+    "watchdog": "that the drive stops its motor if the host is gone: test it with --watchdog, or pull the plug once",
     "serial_number": "which drive it is: it reports no serial number, so another drive of its type looks the same",
     "emergency_stop": "the emergency stop, the brake and the end stops",
     "control": "a motion under control: the inertia is not known",
@@ -94,7 +94,7 @@ class FirstMotion:
         if self.drive_watchdog is None:
             return "the drive declares no watchdog"
         if not self.drive_watchdog.read_back and self.watchdog is None:
-            return "the drive does not confirm its watchdog, and nobody has seen it work: test it with --watchdog"
+            return "the drive does not confirm its watchdog, and it was never tested: test it with --watchdog"
         return ""
 
     def to_dict(self) -> dict[str, Any]:

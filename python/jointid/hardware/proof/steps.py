@@ -186,7 +186,7 @@ class Steps:
         low, high = bench.limits.position
         if not low + sizes.travel <= axis.sample.position <= high - sizes.travel:
             reasons.append(
-                f"the joint stands at {axis.sample.position:.4f} rad, too near to the end of its window, {low:.4f} "
+                f"the joint is at {axis.sample.position:.4f} rad, too near to the end of its window, {low:.4f} "
                 f"to {high:.4f} rad, for a motion of {sizes.travel:.4f} rad"
             )
         if reasons:

@@ -155,7 +155,7 @@ class Guard:
         """
         limits = self._limits
         if not math.isfinite(torque):
-            raise LimitError("torque", f"the controller asks for {torque}, which is not finite")
+            raise LimitError("torque", f"the controller requests {torque}, which is not finite")
         # The controller limits its torque itself; a rounding error is no violation.
         if abs(torque) > limits.torque * (1.0 + 1e-9):
             _hold("torque", torque, limits.torque, "N·m")

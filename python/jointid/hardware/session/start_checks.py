@@ -48,7 +48,7 @@ def problems_on_paper(
     if isinstance(controller, _core.OpenLoop):
         largest = float(np.abs(wanted).max())
         if largest > limits.torque:
-            yield f"the trajectory asks for {largest:.4g} N·m, more than {limits.torque:.4g} N·m"
+            yield f"the trajectory needs {largest:.4g} N·m, more than {limits.torque:.4g} N·m"
         return
     low, high = limits.position
     if not (wanted.min() >= low and wanted.max() <= high):
@@ -125,7 +125,7 @@ def problems_at_rest(sample: DriveSample, limits: SessionLimits) -> Iterator[str
     low, high = limits.position
     if not low <= sample.position <= high:
         yield (
-            f"the joint stands at {sample.position:.4f} rad, outside {low:.4f} to {high:.4f} rad: is it homed?"
+            f"the joint is at {sample.position:.4f} rad, outside {low:.4f} to {high:.4f} rad: is it homed?"
         )
     if sample.clipped:
         yield "the torque sensor is at the end of its range"
