@@ -144,7 +144,7 @@ def _same(words: tuple[str, str | None], option: str, value: str | None) -> bool
 def _parts(
     action: Action, command: str, model: str, *, file: bool
 ) -> tuple[str, list[str], list[tuple[str, str, Any]]]:
-    """Return the verb, the options, and entries of the joint file for arguments without an option."""
+    """Return the verb, the options, and joint file entries for arguments without an option."""
     by_option = not file and all(option_of(command, name)[0] for name in action.arguments)
     if action.function == "Joint" and not (by_option and action.arguments.keys() <= _FACTS):
         return "", [], list(_joint_fields(action.arguments))

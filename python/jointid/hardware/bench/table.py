@@ -24,7 +24,7 @@ Made = TypeVar("Made")
 
 
 class Table:
-    """A table of a joint file, with its place for error messages.
+    """Table of a joint file, with its place for error messages.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ class Table:
         return value
 
     def make(self, kind: Callable[..., Made], **fixed: Any) -> Made:
-        """Return a dataclass whose fields are the keys of this table.
+        """Return a dataclass with the values of this table.
 
         Parameters
         ----------

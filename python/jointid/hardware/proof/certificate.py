@@ -123,7 +123,7 @@ class Certificate:
     def save(self, path: str | Path) -> None:
         """Write the certificate as TOML, completely or not at all."""
         lines = [
-            "# Written by `jointid first-motion`; `jointid run` on a real joint asks for it. Do not edit it.",
+            "# Written by `jointid first-motion`; `jointid run` on a real joint requires it. Do not edit it.",
             f"schema = {SCHEMA}",
             f'date = "{self.date.isoformat(timespec="seconds")}"',
         ]

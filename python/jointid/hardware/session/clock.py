@@ -21,7 +21,7 @@ class Clock(Protocol):
 
 
 class MonotonicClock:
-    """The machine's monotonic clock, with absolute deadlines.
+    """Monotonic clock of the machine, with absolute deadlines.
 
     Without a real-time priority, a sleep ends 50 µs to some milliseconds late. Absolute deadlines keep these delays
     from adding up. For closer deadlines, `spin` replaces the end of each sleep by a busy wait, which occupies a core

@@ -1,4 +1,4 @@
-"""Check that a drive's watchdog is quick enough for a motion, by the joint's travel after its host's death."""
+"""Check that a drive's watchdog is quick enough for a motion: the joint's travel after the host's death is small."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class WatchdogTravel:
     stated : bool
         Whether `allowed` is from the joint file. Otherwise it is `at_once` plus a share of the position range.
     longest : float or None
-        Longest watchdog time that passes, in whole milliseconds [s]; None if `watchdog.time` or no time passes.
+        Longest watchdog time that passes, in whole milliseconds [s]; None if `watchdog.time` passes, or if no time does.
     coasts : bool
         Whether the joint states no friction. `travel` then ends with the watchdog's time, and the joint coasts on.
     revolute : bool
