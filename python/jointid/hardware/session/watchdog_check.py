@@ -39,7 +39,7 @@ class WatchdogTravel:
     stated : bool
         Whether `allowed` is from the joint file. Otherwise it is `at_once` plus a share of the position range.
     longest : float or None
-        Longest watchdog time that passes, in whole milliseconds [s]; None if `watchdog.time` passes, or if no time does.
+        Longest watchdog time that passes, in whole ms [s]; None if `watchdog.time` passes, or if no time does.
     coasts : bool
         Whether the joint states no friction. `travel` then ends with the watchdog's time, and the joint coasts on.
     revolute : bool
