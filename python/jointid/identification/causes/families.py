@@ -68,7 +68,7 @@ class Family:
         """Finding type of the cause."""
         return FindingType(
             code=self.name,
-            meaning=f"{self.meaning} explains the residual, also on held-out data. Info: it is harmless",
+            meaning=f"{self.meaning} explains the residual, also on held-out data. Info if harmless",
             advice=self.remedy,
             picture="windows",
         )
@@ -133,7 +133,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="gravity",
         meaning="gravity that the model lacks",
-        remedy="identify gravity, too: `stribeck:gravity=free`",
+        remedy="also identify gravity: `stribeck:gravity=free`",
         candidates=of.gravity,
         advice=lambda fit, _: fit.identified_with(gravity="free"),
         size=sizes.amplitude,
@@ -141,7 +141,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="inertia_varies",
         meaning="inertia that varies with the angle",
-        remedy="move about one pose",
+        remedy="record motion about one pose",
         candidates=of.inertia_varies,
         advice=_always(
             Action("record", text="motion about one pose, or with a gentler acceleration"),
@@ -194,7 +194,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="drift",
         meaning="drift of a coefficient",
-        remedy="record after warming up, or identify the first and the last part separately",
+        remedy="record after warming up, or identify the first and the last part of the log separately",
         candidates=of.drift,
         advice=_always(
             Action("record", text="after warming up"),
@@ -206,7 +206,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="harmonic",
         meaning="torque that depends on the angle",
-        remedy="add harmonics of that order to the model",
+        remedy="add harmonics of the named order to the model",
         candidates=of.harmonic,
         advice=lambda fit, cause: _with_order(fit, "harmonics", cause),
         size=sizes.over_angle("angle"),
@@ -214,15 +214,15 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="ripple",
         meaning="torque that depends on the motor angle",
-        remedy="add ripple of that order to the model",
+        remedy="add ripple of the named order to the model",
         candidates=of.ripple,
         advice=lambda fit, cause: _with_order(fit, "ripple", cause),
         size=sizes.over_angle("motor angle"),
     ),
     Family(
         name="delay",
-        meaning="late or early signal",
-        remedy="correct the time stamps of that signal",
+        meaning="a late or early signal",
+        remedy="correct the time stamps of this signal",
         candidates=of.delay,
         advice=against_delay,
         size=sizes.lateness,
@@ -264,7 +264,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="other_run",
         meaning="a recording with different values",
-        remedy="compare its unit, sign, zero and load with the others; identify it alone",
+        remedy="compare the unit, sign, zero and load of this recording with the others; identify this recording alone",
         candidates=of.other_run,
         advice=_always(
             Action(
@@ -276,8 +276,8 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="disturbance",
-        meaning="short disturbance",
-        remedy="cut that time out of the recording",
+        meaning="a short disturbance",
+        remedy="cut the disturbance out of the recording",
         advice=_always(
             Action("record", text="without contact"),
             Action("inspect", text="what happened at that time"),

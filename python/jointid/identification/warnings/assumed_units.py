@@ -16,7 +16,7 @@ from jointid.recording.signals import SIGNALS, header_unit
 ASSUMED_UNITS = FindingType(
     code="assumed_units",
     meaning="a column has no unit, so SI is assumed",
-    advice="state the unit when loading, or in the header (as in `position_rad`, `torque_Nm`)",
+    advice="state the unit when loading, or in the header (such as `position_rad`, `torque_Nm`)",
 )
 _AGREES = 0.01  # relative difference of a velocity and the position's rate
 

@@ -17,8 +17,8 @@ from jointid.identification.warnings.no_friction import without_friction
 
 AT_BOUND = FindingType(
     code="at_bound",
-    meaning="a parameter ended on its bound. It has no standard error, so do not use it as a value. Info: a friction "
-    "of 0 that is at most a tenth of all friction",
+    meaning="a parameter ended on its bound. The parameter has no standard error, so do not use its value. Info: a "
+    "friction parameter is 0, and its true value is at most a tenth of all friction",
     advice="widen the bound, or check units, signs and gear ratio",
 )
 

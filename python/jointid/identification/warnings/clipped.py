@@ -17,14 +17,14 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 
 TORQUE_SATURATED = FindingType(
     code="torque_saturated",
-    meaning="the torque is at its limit in more than 1 % of the samples, and reaches it more than once. "
-    "A commanded step is not a limit",
-    advice=f"record gentler motion, or record the torque that the drive applied{DESIGNED}",
+    meaning="the torque is at its limit in more than 1 % of the samples, and reaches this limit "
+    "more than once. A commanded step does not count",
+    advice=f"record the torque that the drive applied, or record gentler motion{DESIGNED}",
 )
 SENSOR_CLIPPED = FindingType(
     code="sensor_clipped",
-    meaning="the sensor is at its limit in more than 1 % of the samples, and reaches it more than once",
-    advice=f"widen the sensor's range, or load the link less{DESIGNED}",
+    meaning="the sensor is at its limit in more than 1 % of the samples, and reaches this limit more than once",
+    advice=f"widen the sensor's range, or record motion with a smaller load on the link{DESIGNED}",
 )
 _CLIPPED = 0.01  # share of the samples at a limit
 _MUCH, _MISSED = (

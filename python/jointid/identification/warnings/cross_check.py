@@ -14,7 +14,7 @@ CONTRADICTED = FindingType(
     code="cross_check",
     severity="blocking",
     meaning="the cross-check, a plain least squares on the filtered signals, gives other values",
-    advice="plot position, velocity and torque over time, and find out which of the two is wrong",
+    advice="plot position, velocity and torque over time, and find out whether identification or cross-check is wrong",
 )
 
 _ROOM = 65  # characters of values in a title

@@ -13,16 +13,16 @@ from jointid.identification.warnings.evidence import Evidence
 
 SIGNAL_LAG = FindingType(
     code="signal_lag",
-    meaning="torque, sensor or velocity lags or leads the position, and was not shifted. Causes: a filter, a slow bus, "
-    "a backward difference. Info: no parameter moves by more than 5 % or two standard errors",
-    advice="shift the signal by this delay, or remove the cause of the delay",
+    meaning="torque, sensor or velocity lags or leads the position, and was not shifted. Possible causes: a filter, a "
+    "slow bus, a backward difference. Info: the lag moves no parameter by more than 5 % or two standard errors",
+    advice="shift the signal by its lag, or remove the cause of the lag",
 )
 DELAY_REMOVED = FindingType(
     code="delay_removed",
     severity="info",
-    meaning="torque, sensor or velocity lagged or led the position. It was shifted before the identification. The "
-    "shift moved the named parameters by more than 5 % or two standard errors",
-    advice="nothing; a shift of 0 keeps the signal unchanged",
+    meaning="torque, sensor or velocity lagged or led the position. The signal was shifted before the identification. "
+    "The shift moved the named parameters by more than 5 % or two standard errors",
+    advice="nothing. A shift of 0 keeps the signal unchanged",
 )
 # Explanation of an early torque; a torque does not come before its motion.
 _EARLY = "the position is late or coarse, the torque early, or the gear elastic"

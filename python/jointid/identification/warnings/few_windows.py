@@ -11,7 +11,7 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 FEW_WINDOWS = FindingType(
     code="few_windows",
     meaning="fewer than eight windows per free parameter make the standard errors uncertain",
-    advice=f"record longer, or use shorter windows{DESIGNED}",
+    advice=f"use shorter windows, or record longer motion{DESIGNED}",
 )
 _FEW = 8  # windows per free parameter
 _ADVISED = 12  # windows per free parameter in the advice; more, because some are then left out

@@ -15,13 +15,13 @@ LEFT_OUT = FindingType(
     code="left_out",
     severity="info",
     meaning="a column with the name of a signal was not read: its unit does not fit, it has no numbers, or another "
-    "column was read",
-    advice="name the column, its unit or its scale when loading. Nothing, if you do not need the signal",
+    "column was read as this signal",
+    advice="name the column, its unit or its scale when loading. Do nothing if you do not need the signal",
 )
 INTERPOLATED = FindingType(
     code="interpolated",
     severity="info",
-    meaning="a signal has a lower sampling rate than the others. It was interpolated linearly",
+    meaning="a signal has a lower sampling rate than the others. This signal was interpolated linearly",
     advice="record all signals with one sampling rate",
 )
 _SHOWN = 6

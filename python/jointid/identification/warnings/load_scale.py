@@ -13,8 +13,8 @@ from jointid.identification.warnings.evidence import Evidence
 LOAD_SCALE = FindingType(
     code="load_scale",
     severity="blocking",
-    meaning="load friction is a share of the drive's torque, and neither inertia nor gravity is known. All values "
-    "multiplied by one factor then fit equally well",
+    meaning="load friction is a share of the drive's torque, and neither inertia nor gravity is known. The data "
+    "then fit equally well if all values are multiplied by any factor",
     advice="leave load friction out, or state the joint's inertia or its link",
 )
 

@@ -9,7 +9,7 @@ from jointid.identification.warnings.evidence import Evidence
 
 LONG_SHIFT = FindingType(
     code="long_shift",
-    meaning="a signal was shifted by more than 0.1 s and 20 samples. No filter or bus delays a signal that long",
+    meaning="a signal was shifted by more than 0.1 s and 20 samples. No filter or bus causes such a long delay",
     advice="state shifts in seconds: 1 ms is 0.001",
 )
 _LONG = 0.1  # [s]

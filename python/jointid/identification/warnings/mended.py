@@ -13,20 +13,20 @@ from jointid.identification.warnings.inspection import Inspected
 UNWRAPPED = FindingType(
     code="unwrapped",
     severity="info",
-    meaning="the angle wraps after each revolution. The identification unwraps it",
+    meaning="the angle wraps after each revolution. The identification unwraps the angle",
     advice="log the angle without wraps",
 )
 HELD_ROWS = FindingType(
     code="held_rows",
     severity="info",
-    meaning="rows repeat the previous sample, because the logger is faster than the bus. They are left out",
+    meaning="rows repeat the previous sample, because the logger is faster than the bus. These rows are left out",
     advice="log at the rate of the bus",
 )
 HELD_TORQUE = FindingType(
     code="held_torque",
     severity="info",
     meaning="the recording does not say how the torque varies between samples. The torque balance predicts better with "
-    "a torque that is held (zero-order hold), so the identification assumes that",
+    "a held torque (zero-order hold), so the identification assumes a held torque",
     advice="state `torque_hold`: `zoh` for a command, `linear` for a measured torque",
 )
 

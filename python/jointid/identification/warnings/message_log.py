@@ -16,7 +16,7 @@ MESSAGE_LOG = FindingType(
     severity="info",
     meaning="the file was not read exactly as written: rows or messages are damaged, repeated, late or left out. Or "
     "time stamps, units or sides differ from the file",
-    advice="check the recorder. Nothing, if you expect this",
+    advice="check the recorder. Do nothing if you expect this",
 )
 _ROOM = 65  # characters of a title, without the number of recordings
 

@@ -20,9 +20,9 @@ from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
-    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, shows in only "
-    "three windows, or is extrapolated from faster motion. Or its shape ended on a bound",
-    advice="use the model coulomb_viscous where no static friction shows, or record slow motion through zero speed"
+    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, rests on "
+    "only three windows, or is extrapolated from faster motion. Or the shape of the Stribeck curve ended on a bound",
+    advice="use the model coulomb_viscous if the log shows no static friction, or record slow motion through zero speed"
     f"{DESIGNED}",
     picture="friction-map",
 )

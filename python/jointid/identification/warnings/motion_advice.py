@@ -12,7 +12,7 @@ from jointid.identification.warnings.evidence import Evidence
 from jointid.joint.joint import Joint
 from jointid.recording.order_statistics import quantile, quantile_of_sizes
 
-DESIGNED = "; `jointid design --after` or `jid.design(estimate)` designs it"
+DESIGNED = "; `jointid design --after` or `jid.design(estimate)` designs such a motion"
 """Text about this advice in the table of findings."""
 
 _SHORTEST, _LONGEST = 6.0, 60.0  # [s]

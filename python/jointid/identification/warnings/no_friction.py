@@ -17,9 +17,10 @@ from jointid.recording.header_words import AT_THE_LINK
 NO_FRICTION = FindingType(
     code="no_friction",
     meaning="friction is less than 2 % of the torque. The torque was measured at the link, or the joint has no "
-    "friction, as in a simulation. Blocking below 5 %, if the torque's header names the joint or a sensor",
-    advice="load the motor's torque or current as torque, and this column as sensor. Nothing, if the joint has no "
-    "friction",
+    "friction, as in a simulation. Blocking: friction is less than 5 %, and the torque's header names the joint or a "
+    "sensor",
+    advice="load the motor's torque or current as torque, and the measured column as sensor. Do nothing if the joint "
+    "has no friction",
 )
 _EXPLAINED = 0.95  # of the variance: friction is absent, not hidden in a residual
 _SMALL = 0.02  # of the torque's root mean square

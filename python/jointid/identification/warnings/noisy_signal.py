@@ -13,9 +13,9 @@ from jointid.identification.warnings.undetermined import listed, scale_of
 
 NOISY_SIGNAL = FindingType(
     code="noisy_signal",
-    meaning="noise in the extra signals of own terms moves a parameter by more than 1.5 %. Noise makes the coefficient "
-    "of its signal too small",
-    advice="record the signal with less noise, or filter it without delay. Fix the coefficient if it is known",
+    meaning="noise in the extra signals of own terms moves a parameter by more than 1.5 %. Noise in a signal makes the "
+    "coefficient of this signal too small",
+    advice="record the signal with less noise, or filter it without delay. Fix the coefficient if you know its value",
 )
 _MOVED = 0.015  # of the value
 _NAMES = 40  # characters

@@ -16,8 +16,8 @@ from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="velocity noise moves a parameter by more than 2 % and by more than half its standard error. Or the noise "
-    "is large compared with the change of velocity over every possible window, and the inertia comes out too small",
+    meaning="velocity noise moves a parameter by more than 2 % and by more than half its standard error. Or, for "
+    "windows of any length, the noise is large compared with the change of velocity: the inertia is then too small",
     advice="record the position with a finer resolution, or record longer. Leave the velocity column out if it is "
     "noisier than the position's derivative",
 )

@@ -11,7 +11,8 @@ from jointid.identification.warnings.structured_residual import excluded, exclud
 POOR_FIT = FindingType(
     code="poor_fit",
     meaning="the model explains less than 95 % of the signal's variance, and neither noise nor a known cause explains "
-    "the rest. Or it explains less than 5 %. Blocking: the mean of the signal explains more than the model",
+    "the rest. Or the model explains less than 5 %, even if the rest is noise. Blocking: the model fits worse than the "
+    "signal's mean",
     advice="check units, signs and gear ratio",
     picture="windows",
 )

@@ -22,9 +22,9 @@ Array = NDArray[np.float64]
 
 RIPPLE = FindingType(
     code="ripple",
-    meaning="the residual oscillates with a multiple of the motor angle. Info: no parameter moves by more than 5 % "
-    "or two standard errors",
-    advice="add ripple of that order to the model, e.g. `stribeck:ripple=2`",
+    meaning="the residual oscillates with a multiple of the motor angle. Info: the ripple moves no parameter by more "
+    "than 5 % or two standard errors",
+    advice="add ripple of the named order to the model, e.g. `stribeck:ripple=2`",
     picture="windows",
 )
 

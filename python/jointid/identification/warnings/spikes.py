@@ -17,13 +17,13 @@ from jointid.recording.recording import Recording
 
 SPIKES = FindingType(
     code="spikes",
-    meaning="single samples lie far from their neighbours; least squares fits them, too",
+    meaning="single samples lie far from their neighbours and distort the least-squares fit",
     advice="delete those rows, and check the logger",
 )
 JUMPS = FindingType(
     code="jumps",
     severity="blocking",
-    meaning="the position jumps, and neither the velocity nor the neighbouring samples show such a motion. "
+    meaning="the position jumps, and neither the velocity nor the neighbouring samples show this jump. "
     "The angle wraps, the encoder lost its index, or samples are lost",
     advice="unwrap the angle, or cut the recording there",
 )

@@ -18,7 +18,7 @@ STANDING = FindingType(
 HARDLY_MOVES = FindingType(
     code="hardly_moves",
     severity="blocking",
-    meaning="the whole motion is less than 50 encoder counts, or only noise. Other findings follow from that",
+    meaning="the whole motion is less than 50 encoder counts, or only noise. Small motion causes other findings, too",
     advice="record a wider motion",
 )
 _MUCH = 0.35

@@ -12,8 +12,8 @@ from jointid.identification.warnings.undetermined import listed, wide, with_part
 
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
-    meaning="the residuals of neighbouring windows correlate by more than 0.5, or a parameter is uncertain, and no "
-    "known cause explains it. The model lacks an effect. Info: every parameter is well determined",
+    meaning="the model lacks an effect, and no known cause explains the residual. The residuals of neighbouring "
+    "windows correlate by more than 0.5, or a parameter is uncertain. Info: every parameter is well determined",
     advice="look at the residuals in the report. Standard errors include the correlation; values may still be biased",
     picture="windows",
 )

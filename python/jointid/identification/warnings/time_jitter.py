@@ -21,8 +21,8 @@ from jointid.recording.recording import Recording
 TIME_JITTER = FindingType(
     code="time_jitter",
     meaning="the position shows that time stamps are off by more than 2 % of a sample period",
-    advice="take the time stamp where the sample is taken. If samples are evenly spaced and none is repeated, use even "
-    "time stamps",
+    advice="take the time stamp on the device that takes the sample. If samples are evenly spaced and none is "
+    "repeated, use even time stamps",
 )
 _JITTER = 0.02  # sample periods
 

@@ -22,7 +22,7 @@ WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
     meaning="the inertia in the log differs from the known inertia by more than 5 %. A difference above 1 % that "
-    "explains the residual is a warning, and blocking beyond a factor of 1.5",
+    "explains the residual is a warning. Beyond a factor of 1.5, such a difference is blocking",
     advice="correct gear ratio, torque constant, torque unit or inertia. Identify the inertia only if its known value "
     "is wrong",
 )
@@ -30,7 +30,7 @@ WRONG_SCALE = FindingType(
 UNSIGNED_TORQUE = FindingType(
     code="unsigned_torque",
     severity="blocking",
-    meaning="the torque is never negative although the joint moves both ways, and the model explains it as a magnitude",
+    meaning="the torque is never negative although the joint moves both ways, and fits the model only as a magnitude",
     advice="record the torque with its sign",
 )
 

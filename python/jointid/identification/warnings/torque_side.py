@@ -11,9 +11,9 @@ from jointid.identification.warnings.inspection import Inspected
 TORQUE_SIDE = FindingType(
     code="torque_side",
     severity="blocking",
-    meaning="position or velocity is on the motor side, and it is not stated on which side the torque is. All values "
-    "in units of torque may be wrong by the gear ratio",
-    advice="state on which side of the gear the torque is (`side`)",
+    meaning="position or velocity is on the motor side, and the side of the torque is not stated. All values in "
+    "units of torque may be wrong by a factor, the gear ratio",
+    advice="state the side of the gear on which the torque is (`side`)",
 )
 
 

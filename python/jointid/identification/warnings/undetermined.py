@@ -19,10 +19,10 @@ from jointid.identification.warnings.no_friction import without_friction
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="the 95 % interval is wider than ±4 % (a gain's: ±1 %), or the value changes with the length of the "
-    "windows. The log has too little speed, slow motion, reversals, load, acceleration, travel or time. Or velocity "
-    "noise hides the inertia, or a gain of the opposite sign fits as well",
-    advice=f"record what is missing, or fix the parameter{DESIGNED}",
+    meaning="the 95 % interval is wider than ±4 % of the value (±1 % for a gain), or the value changes with the length "
+    "of the windows. The log has too little speed, slow motion, reversals, load, acceleration, travel or time. Or "
+    "velocity noise hides the inertia. Or a sensor gain of the opposite sign fits nearly as well",
+    advice=f"fix the parameter, or record the missing motion{DESIGNED}",
 )
 
 # A parameter is not well determined if its 95 % interval is wider than this on either side, or if other windows

@@ -14,7 +14,7 @@ UNDIVIDED_OFFSET = FindingType(
     severity="info",
     meaning="a constant torque and direction-dependent Coulomb friction look the same in the data. Only the sum of the "
     "Coulomb frictions is determined",
-    advice="state the offset if you know it, or leave it out if gravity is the only constant torque",
+    advice="state the offset if you know it, or leave the offset out if gravity is the only constant torque",
 )
 
 

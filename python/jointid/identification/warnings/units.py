@@ -12,9 +12,9 @@ from jointid.recording.recording import Recording
 IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
-    meaning="degrees seem to be read as radians: the motion is too fast or too wide, or velocity or inertia is off by "
-    "about 57.3. Or the motor's angle is read as the joint's. Or the time is not in seconds. Or a current above "
-    "100 A or a torque above 5 kN·m has no stated unit. Info: a wide motion in a stated unit",
+    meaning="degrees seem to be read as radians: the motion is too fast or too wide, or velocity or inertia is wrong "
+    "by a factor of about 57.3. Or the motor's angle is read as the joint's. Or the time is not in seconds. Or a "
+    "current above 100 A or a torque above 5 kN·m has no stated unit. Info: the motion is wide, but its unit is stated",
     advice="state the unit of position, velocity, time, current or torque when loading, or convert the values",
 )
 _DEGREES = {"position": "deg", "velocity": "deg/s"}
