@@ -18,22 +18,22 @@ TYPES = {
             severity="blocking",
             meaning="all torques differ from the weight of the URDF's links by about the same factor, above 1.6. "
             "They are probably currents or motor-side torques. A factor below 2.5 is reported only if no "
-            "change of a single link explains it nearly as well",
+            "change of a single link explains the torques nearly as well",
             advice="state the unit, the gear ratios, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="different_factors",
             severity="blocking",
-            meaning="the torques of several joints differ from the weight of the URDF's links, each by its own "
-            "factor. Probably one gear ratio, torque constant or gain was used for all joints. Reported "
-            "only if no change of a single link explains it nearly as well",
+            meaning="the torques of several joints differ from the weight of the URDF's links, by a different factor "
+            "for each joint. Probably one gear ratio, torque constant or gain was used for all joints. Reported only "
+            "if no change of a single link explains the torques nearly as well",
             advice="state `gear_ratios`, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="joint_order",
             severity="blocking",
-            meaning="three or more joints are in a different order in the log than in the robot: all their "
-            "columns, only the torques, or the wanted positions of a drive",
+            meaning="three or more joints are in a different order in the log than in the robot. This concerns "
+            "all columns, only the torques, or a drive's wanted positions",
             advice=_COLUMNS,
         ),
         FindingType(
@@ -46,21 +46,21 @@ TYPES = {
             code="reversed_positions",
             severity="blocking",
             meaning="all positions, with or without the torques, have the opposite sign to the URDF's axes. An "
-            "arm that is its own mirror image does not show this",
+            "arm that is its own mirror image does not show this error",
             advice="state `directions`",
         ),
         FindingType(
             code="unsigned_torque",
             severity="blocking",
-            meaning="a torque is never negative although the joint moves both ways. Its magnitude fits the URDF; "
-            "its value does not",
+            meaning="a torque is never negative although the joint moves both ways. The torque fits the URDF only "
+            "as a magnitude",
             advice="log the driver's signed value",
         ),
         FindingType(
             code="implausible_unit",
-            meaning="a position or velocity is probably in degrees: the two differ by a factor of 57. Blocking "
-            "if most joints move over twice the URDF's range, or if the measured torques fit the links "
-            "only in degrees",
+            meaning="a position or velocity is probably in degrees: the velocity and the position's derivative "
+            "differ by a factor of 57. Blocking if most joints move over twice the URDF's range, or if the measured "
+            "torques fit the links only in degrees",
             advice="state the unit of the signal",
         ),
         FindingType(
@@ -72,8 +72,8 @@ TYPES = {
         FindingType(
             code="swapped_joints",
             severity="blocking",
-            meaning="the columns of two joints are probably exchanged. Checked if a joint's residual is above 5 "
-            "%, or if its friction would be negative",
+            meaning="the columns of two joints are probably exchanged. Checked if a joint's residual is "
+            "above 5 %, or if its friction would be negative",
             advice=_COLUMNS,
         ),
         FindingType(
@@ -105,13 +105,13 @@ TYPES = {
         FindingType(
             code="wrong_coupling",
             meaning="a motor coupling is missing or has a wrong factor. Checked like `swapped_joints`, with free "
-            "inertias: factors 0 and ±1 of neighbouring joints, and exchanged rows and columns. A factor "
-            "that makes friction negative counts only if the fit is much better with it",
+            "inertias. Factors 0 and ±1 of neighbouring joints are tried, and exchanged rows and columns. A factor "
+            "that makes friction negative is named only if the fit is much better with this factor",
             advice="state `couplings`",
         ),
         FindingType(
             code="tilted_base",
-            meaning="the direction of gravity differs from the facts; the tilt is given with its error",
+            meaning="the direction of gravity differs from the facts. The finding states the tilt and its error",
             advice="state `gravity`",
         ),
         FindingType(
@@ -122,8 +122,8 @@ TYPES = {
         FindingType(
             code="wrong_torque_scale",
             meaning="the torque of one joint is too high or too low, compared with the weight of the links and "
-            'the other joints. A wrong torque constant causes this. With `inertia="free"` only joints '
-            "that carry each other show it, so the first joint is not checked. A small factor on all "
+            'the other joints. A wrong torque constant causes this. With `inertia="free"`, only joints '
+            "that carry each other show this error, so the first joint is not checked. A small factor on all "
             "torques looks like heavier links",
             advice="state `torque_scales`",
         ),
@@ -135,8 +135,8 @@ TYPES = {
         FindingType(
             code="wrong_centre",
             meaning="the centre of mass of a link is not where the URDF has it. Not checked with "
-            '`inertia="free"`. A shift along the next joint\'s axis may belong to either link: both are '
-            "named",
+            '`inertia="free"`. A shift along the next joint\'s axis may belong to either of two links: both '
+            "are named",
             advice='correct the URDF, or identify with `inertia="free"`',
         ),
         FindingType(
@@ -146,20 +146,20 @@ TYPES = {
         ),
         FindingType(
             code="more_wrong_facts",
-            meaning="joints fit badly even with the named facts corrected: something more is wrong",
+            meaning="joints still fit badly after the named facts are corrected: another fact is wrong, too",
             advice="correct the named facts, then identify again",
         ),
         FindingType(
             code="several_wrong_facts",
             severity="info",
-            meaning="several facts are wrong. Up to three are found, one after the other; the printed call "
-            "corrects them all",
-            advice="state all of them",
+            meaning="several facts are wrong. Up to three wrong facts are found, one after the other; the printed "
+            "call corrects all of them",
+            advice="state all corrected facts",
         ),
         FindingType(
             code="consequences",
             severity="info",
-            meaning="warnings that disappear when the named facts are corrected; they are not listed one by one",
+            meaning="warnings that disappear when the named facts are corrected; these warnings are not listed",
             advice="nothing",
         ),
         FindingType(
@@ -171,22 +171,22 @@ TYPES = {
         ),
         FindingType(
             code="signal_lag",
-            meaning="the torque is late or early relative to the position, and was not shifted. With a drive: "
-            "the torque that its wanted positions cause",
+            meaning="the torque is late or early relative to the position, and was not shifted. With a position "
+            "drive, this is the torque that the wanted positions cause",
             advice="state `shift`, or check filters and clocks",
         ),
         FindingType(
             code="delay_removed",
             severity="info",
             meaning="the torque was late or early relative to the position, and was shifted before the "
-            "identification. With a drive: the delay from a row to the effect of its wanted position",
+            "identification. With a position drive, the delay is from a row to the effect of its wanted position",
             advice="nothing, or state `shift`",
         ),
         FindingType(
             code="recorded_velocity",
             severity="info",
-            meaning="the recorded velocity of a joint is used, not the one derived from its positions. It "
-            "predicts held-out torque better, by three standard errors and a tenth of the squared "
+            meaning="the recorded velocity of a joint is used, not the velocity derived from its positions. The "
+            "recorded velocity predicts held-out torque better, by three standard errors and a tenth of the squared "
             "residual. Warning if noise hides all motion in the derived velocity, so that the two cannot "
             "be compared",
             advice="nothing, or check the time stamps and the positions' resolution",
@@ -194,14 +194,14 @@ TYPES = {
         FindingType(
             code="gravity_found",
             severity="info",
-            meaning='the direction of gravity in the base\'s frame, identified because of `gravity = "free"`',
+            meaning='the direction of gravity in the base\'s frame was identified, because of `gravity = "free"`',
             advice="nothing, or state `gravity`",
         ),
         FindingType(
             code="torque_filtered",
             severity="info",
             meaning="a first-order low-pass filter on the torque explains held-out motion better than a delay "
-            "does; it was undone before the identification",
+            "does. The filter was undone before the identification",
             advice="nothing, or state `shift` with `torque_filter`",
         ),
         FindingType(
@@ -218,7 +218,7 @@ TYPES = {
         ),
         FindingType(
             code="poor_fit",
-            meaning="more than 15 % of a joint's torque stays unexplained",
+            meaning="the model leaves more than 15 % of a joint's torque unexplained",
             advice='identify with `inertia="free"`; check units, signs and gear ratio of the joint',
         ),
         FindingType(
@@ -228,14 +228,14 @@ TYPES = {
         ),
         FindingType(
             code="at_bound",
-            meaning="friction would be negative and is held at 0. Info if it is at most a tenth of the joint's "
-            "friction",
-            advice="check the model and the given facts",
+            meaning="friction would be negative and is held at 0. Info if the friction held at 0 is at most a tenth of "
+            "the joint's friction",
+            advice="check the model and the stated facts",
         ),
         FindingType(
             code="standing",
-            meaning="joints stand still, stick or are too slow; these parts are left out. Info up to 35 % of the "
-            "time",
+            meaning="joints stand still, stick or are too slow; these parts of the log are left out. Info up to 35 % "
+            "of the time",
             advice="record more motion",
         ),
         FindingType(
@@ -245,33 +245,33 @@ TYPES = {
         ),
         FindingType(
             code="impossible_inertia",
-            meaning='no bodies can have these inertial parameters. Info with `inertia="free"`, with the distance '
-            "in standard errors",
+            meaning='no physical body can have these inertial parameters. Info with `inertia="free"`; the finding '
+            "states the distance in standard errors",
             advice='identify with `inertia="free"`',
         ),
         FindingType(
             code="scaled_inertia",
             severity="info",
-            meaning="a link's scale differs from 1",
+            meaning="a link's factor (`inertia_scale`) differs from 1",
             advice="nothing, or correct the URDF",
         ),
         FindingType(
             code="merged_inertia",
             severity="info",
-            meaning="the motion does not separate a rotor's inertia or a link's scale from other inertias",
+            meaning="the motion does not separate a rotor's inertia or a link's factor from other inertias",
             advice="nothing, or state `rotor_inertias`",
         ),
         FindingType(
             code="joints_in_order",
             severity="info",
-            meaning="the recording does not name the URDF's joints; they are taken in order",
+            meaning="the recording does not name the URDF's joints, so columns are assigned to joints in order",
             advice="check the order",
         ),
         FindingType(
             code="joints_left_out",
             severity="info",
-            meaning="joints of the log, such as a gripper's, have another clock than the joints with torques; "
-            "they are not read",
+            meaning="joints of the log, such as a gripper's, are not read, because their clock differs from that of "
+            "the joints with torques",
             advice="nothing, or name the joints with `joints`",
         ),
         FindingType(
