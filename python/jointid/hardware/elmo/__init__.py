@@ -1,4 +1,4 @@
-"""An Elmo SimplIQ drive and its torque sensor's converter on CANopen, real and emulated."""
+"""An Elmo SimplIQ drive and its torque sensor's converter on CANopen, real or emulated."""
 
 from jointid.hardware.elmo.codec import Command, DriveError, Reply
 from jointid.hardware.elmo.drive import ElmoDrive

@@ -1,7 +1,7 @@
-"""Frames of Elmo's binary interpreter, both ways. Nothing here touches a bus.
+"""Encode and decode the frames of Elmo's binary interpreter. Nothing here uses a bus.
 
-Layout, after Elmo's CANopen DS 301 implementation guide (MAN-CAN301IG): two letters, fourteen bits of
-index, a bit for query (towards the drive) or error (from it), a bit for float, four bytes of value.
+Layout (Elmo's CANopen DS 301 implementation guide, MAN-CAN301IG): two letters, fourteen bits of index, one
+bit for a query (to the drive) or an error (from the drive), one bit for a float, four bytes of value.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Command:
     index : int
         0 for a scalar; 1 in CL[1].
     value : int, float or None
-        What is assigned; None: a query, or an execution for such commands as ST.
+        Assigned value. None: a query, or the execution of a command such as ST.
     """
 
     letters: str
@@ -74,19 +74,19 @@ class Command:
 
     @property
     def key(self) -> tuple[str, int]:
-        """By which its reply is recognised."""
+        """Letters and index, which the reply repeats."""
         return self.letters, self.index
 
     @property
     def executes(self) -> bool:
-        """Whether it acts, having no value."""
+        """Whether the command is executed: it has no value."""
         return self.value is None and self.letters in EXECUTED
 
     def payload(self) -> bytes:
-        """The frame's bytes: four for a query or an execution, eight for an assignment.
+        """Return the bytes of the frame: four for a query or an execution, eight for an assignment.
 
-        An eight-byte frame of zeros would assign 0, e.g. set the encoder anew with PX; a query is
-        therefore always four bytes long.
+        A query is always four bytes long: an eight-byte frame of zeros would assign 0, for example with PX
+        the encoder position.
         """
         letters = self.letters.encode("ascii")
         low, high = self.index & 0xFF, self.index >> 8
@@ -98,12 +98,12 @@ class Command:
 
     @classmethod
     def of(cls, payload: bytes) -> Command:
-        """The command of a frame, as the drive reads it.
+        """Decode the command in a frame, as the drive reads it.
 
         Raises
         ------
         InputError
-            The bytes are no command.
+            The bytes are not a command.
         """
         letters, index, flags = _head(payload)
         if len(payload) not in (4, 8):
@@ -115,7 +115,7 @@ class Command:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Reply:
-    """What the drive answered.
+    """Answer of the drive.
 
     Attributes
     ----------
@@ -131,24 +131,24 @@ class Reply:
 
     @property
     def key(self) -> tuple[str, int]:
-        """Of the command that it belongs to."""
+        """Letters and index of the command that the reply answers."""
         return self.letters, self.index
 
     def payload(self) -> bytes:
-        """The frame's eight bytes."""
+        """Return the eight bytes of the frame."""
         _check_value(_named(self.letters, self.index), self.value)
         return Command(letters=self.letters, index=self.index, value=self.value).payload()
 
     @classmethod
     def of(cls, payload: bytes) -> Reply:
-        """The reply of a frame.
+        """Decode the reply in a frame.
 
         Raises
         ------
         DriveError
-            The drive refused; its value is then never one.
+            The drive refused the command.
         InputError
-            The bytes are no reply.
+            The bytes are not a reply.
         """
         letters, index, flags = _head(payload)
         if len(payload) != 8:
@@ -159,7 +159,7 @@ class Reply:
 
 
 def refusal(letters: str, index: int, code: int) -> bytes:
-    """The frame of a reply that refuses."""
+    """Return the frame of a reply that refuses a command."""
     low, high = index & 0xFF, index >> 8
     return letters.encode("ascii") + bytes((low, high | _QUERY_OR_ERROR)) + struct.pack("<I", code)
 

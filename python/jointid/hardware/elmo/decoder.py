@@ -1,4 +1,4 @@
-"""Decoder of an Elmo drive's cyclic frames; for a session and for the replay of its frame log."""
+"""Decoder of an Elmo drive's cyclic frames, for a session and for the replay of its frame log."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.joint.joint import Joint
 
 
 class ElmoDecoder:
-    """Position, current and torque sensor out of frames.
+    """Decode position, current and torque sensor from frames.
 
     Parameters
     ----------
@@ -31,30 +31,30 @@ class ElmoDecoder:
         self._positions_due = self._readings_due = 0
 
     def begin(self) -> None:
-        """A SYNC is sent: its answers are new."""
+        """Start a cycle: a SYNC was sent, and the next answers belong to it."""
         self._positions_due += 1
         self._readings_due += 1
         self.fresh = False
 
     def forget(self) -> None:
-        """Expect no answers to earlier SYNCs any more."""
+        """Stop waiting for answers to earlier SYNCs."""
         self._positions_due = self._readings_due = 0
 
     @property
     def complete(self) -> bool:
-        """Whether all that a SYNC asks for has come."""
+        """Whether all answers to the last SYNC have arrived."""
         synced = isinstance(self._options.torque, SyncedConverter)
         return self._positions_due == 0 and (self._readings_due == 0 or not synced)
 
     @property
     def lacking(self) -> str:
-        """What is missing of it; empty when nothing is."""
+        """Missing answer to the last SYNC; empty when it is complete."""
         if self._positions_due:
             return "position"
         return "" if self.complete else "torque sensor's reading"
 
     def take(self, identifier: int, payload: bytes) -> bool:
-        """Read a frame; whether it was one of these."""
+        """Read a frame. Return whether it was a cyclic frame."""
         source = self._options.torque
         if identifier == self._options.position_id and len(payload) >= 4:
             self.position = self._options.angle(struct.unpack_from("<i", payload)[0], self._joint)
@@ -72,7 +72,7 @@ class ElmoDecoder:
         return False
 
     def take_voltage(self, voltage: float) -> None:
-        """Read the torque sensor's voltage."""
+        """Store the torque sensor's voltage."""
         source = self._options.torque
         if source is None:
             return

@@ -1,4 +1,4 @@
-"""An Elmo SimplIQ drive over CAN: brought up, driven by current, shut down."""
+"""An Elmo SimplIQ drive over CAN: connect, command current, switch off."""
 
 from __future__ import annotations
 
@@ -31,14 +31,12 @@ from jointid.hardware.session.drive_report import DriveReport, Reported
 from jointid.hardware.session.silence import DriveSilence
 from jointid.joint.joint import Joint
 
-_BOOT = 2.0  # [s] to wait for its message
-_UNIT_MODE = 0.5  # [s] that changing it may take
-_IN_USE_ANSWER = (
-    0.02  # [s] for an answer before the drive is reset: only one that is in use gives one
-)
-_UNREAD = 3  # questions for the sensor without an answer
-_LOST = 1.5  # periods after which an answer to a SYNC that has not come is lost
-_LEAST = 0.25  # of the time for an answer: with less left, none would come in time
+_BOOT = 2.0  # [s] to wait for the boot-up message
+_UNIT_MODE = 0.5  # [s] that a change of the unit mode may take
+_IN_USE_ANSWER = 0.02  # [s] for an answer before the reset: only a drive in use answers
+_UNREAD = 3  # questions to the sensor without an answer
+_LOST = 1.5  # periods after which a missing answer to a SYNC counts as lost
+_LEAST = 0.25  # share of the time for an answer below which none would arrive in time
 
 
 class ElmoDrive:
@@ -47,9 +45,9 @@ class ElmoDrive:
     Parameters
     ----------
     bus : can.BusABC
-        Left open by `close`.
+        Stays open after `close`.
     joint : Joint
-        With gear ratio and torque constant.
+        The joint; needs gear ratio and torque constant.
     options : ElmoOptions
     clock : Clock, optional
         Default: the bus's own if it has one, else a `MonotonicClock`.
@@ -100,12 +98,12 @@ class ElmoDrive:
 
     @property
     def clock(self) -> Clock:
-        """What the samples are stamped by."""
+        """Clock of the sample times."""
         return self._link.clock
 
     @property
     def tap(self) -> Tap | None:
-        """Called with each frame: time, identifier, payload, whether it was sent."""
+        """Callable that receives each frame: time, identifier, payload, whether it was sent."""
         return self._link.tap
 
     @tap.setter
@@ -114,11 +112,11 @@ class ElmoDrive:
 
     @property
     def resolution(self) -> float:
-        """Output angle of an encoder count [rad]."""
+        """Joint angle per encoder count [rad]."""
         return self.options.resolution(self.joint)
 
     def identity(self) -> dict[str, Any]:
-        """What the drive reported about itself, and what was wrong with the frames on its bus."""
+        """Identity that the drive reports, and problems of the frames on its bus."""
         found = dict(self._identity)
         if self._link.echoes.lost:
             found["lost_echoes"] = self._link.echoes.lost
@@ -127,12 +125,12 @@ class ElmoDrive:
         return found
 
     def report(self) -> DriveReport:
-        """What the drive is, how it is set and how it stands now; connected, its motor off.
+        """Return the drive's identity, settings and present state; connected, motor off.
 
         Raises
         ------
         DriveFaultError
-            It does not answer, or its position does not come.
+            The drive does not answer, or sends no position.
         """
         sample = self.read(0.1)
         speed = self._link.number("VX")
@@ -146,13 +144,13 @@ class ElmoDrive:
         )
 
     def metadata(self) -> dict[str, Any]:
-        """What a replay of the frame log needs: drive type and options."""
+        """Drive type and options, which a replay of the frame log needs."""
         return {"drive_type": "elmo", "drive_options": elmo_options_document(self.options)}
 
     def connect(self, period: float) -> None:
-        """Reset the drive's communication, map its PDOs, arm the watchdogs; motor off, torque mode.
+        """Reset the drive's communication, map its PDOs and arm the watchdogs; motor off, torque mode.
 
-        Listens first. A drive whose motor is on, or that somebody else commands, is not changed.
+        Listen first: do not change a drive whose motor is on or that another program commands.
         """
         link, node = self._link, self.options.node
         if period > CYCLES * self.options.heartbeat:
@@ -208,7 +206,7 @@ class ElmoDrive:
         link.up = True
 
     def problems(self, torque_limit: float) -> list[str]:
-        """Reasons not to enable the motor."""
+        """Return reasons not to enable the motor."""
         return reasons_not_to_start(
             self._link,
             self.options,
@@ -219,11 +217,11 @@ class ElmoDrive:
         )
 
     def enable(self) -> None:
-        """Motor on, at zero torque, and watched: our heartbeat begins before the motor is on."""
+        """Switch the motor on at zero torque. Our heartbeat starts before, so the drive's watchdog is active."""
         self._switch.on()
 
     def read(self, timeout: float) -> DriveSample:
-        """Position, current and sensor at a SYNC."""
+        """Send a SYNC and read position, current and torque sensor."""
         link, seen = self._link, self._seen
         end = link.clock.now() + timeout
         link.read_waiting()
@@ -256,7 +254,7 @@ class ElmoDrive:
         )
 
     def command(self, torque: float) -> float:
-        """Send a torque, and our heartbeat."""
+        """Send a torque command and our heartbeat."""
         current = max(-self._peak, min(self._peak, torque / self._per_ampere))
         kept = self._kept(current)
         self._link.send(self._command_id, Command(letters="TC", value=kept).payload())
@@ -265,7 +263,7 @@ class ElmoDrive:
         return kept * self._per_ampere
 
     def _kept(self, current: float) -> float:
-        """What the drive keeps of a command [A]: never more than was asked for."""
+        """Return the part of a current command that the drive keeps [A]; never more than the command."""
         if self.options.mantissa_bits < 24:
             mantissa, exponent = math.frexp(current)
             steps = math.trunc(math.ldexp(mantissa, self.options.mantissa_bits))
@@ -273,23 +271,23 @@ class ElmoDrive:
         return float(struct.unpack("<f", struct.pack("<f", current))[0])
 
     def disable(self) -> DriveEnd:
-        """TC = 0, then MO = 0, again until the drive confirms that its motor is off; then SDO and NMT stop.
+        """Send TC = 0, then MO = 0, until the drive confirms that its motor is off; then use SDO and NMT stop.
 
-        A drive that is never reached stops by itself, because our heartbeat stays away.
+        A drive that cannot be reached stops on its own watchdog, because our heartbeat is missing.
         """
         if not self._found_off:
             return DriveEnd()  # another program moves its motor
         return self._switch.off(self._period)
 
     def fall_silent(self) -> DriveSilence:
-        """Stop our heartbeat, the motor on, and see what the drive's watchdog does; its failure is left in it."""
+        """Stop our heartbeat while the motor is on and observe the drive's watchdog. Its failure stays in the drive."""
         return fall_silent(self._link, self.options, self._switch)
 
     def close(self) -> None:
-        """Leave the drive pre-operational, its watchdogs disarmed when its motor is off.
+        """Leave the drive pre-operational. Disarm its watchdogs when its motor is off.
 
-        Where somebody else commands the drive it is stopped: its motor goes off again if it is on, and it
-        takes no commands.
+        If another program commands the drive, stop the drive: its motor is switched off and it accepts no
+        more commands.
         """
         link = self._link
         link.up = False
@@ -305,7 +303,7 @@ class ElmoDrive:
             link.drain(0.01)
             if (
                 link.foreign.frames
-            ):  # a command of theirs that still waited in the drive is done by now
+            ):  # by now the drive has executed the other program's waiting command
                 link.send(canopen.NMT, canopen.network(canopen.STOP, self.options.node))
                 link.drain(0.01)
         except DriveFaultError:
@@ -316,11 +314,11 @@ class ElmoDrive:
 
     @property
     def command_latency(self) -> float:
-        """From sending a command until the drive acts on it [s], estimated."""
+        """Estimate the delay from sending a command until the drive acts on it [s]."""
         return command_latency(self.options)
 
     def bus_load(self, period: float) -> float:
-        """Share of the bus: SYNC, position, command with echo, both heartbeats, sensor."""
+        """Return the share of the bus load: SYNC, position, command with echo, both heartbeats, sensor."""
         bits = bits_on_wire
         total = bits(0) + 3 * bits(8) + bits(1) * (1.0 + period / self.options.drive_heartbeat)
         if isinstance(self.options.torque, SyncedConverter):
@@ -330,7 +328,7 @@ class ElmoDrive:
         return total / (self.options.bitrate * period)
 
     def _refuse_if_motor_on(self, timeout: float | None = None) -> None:
-        """Raise if the motor is on, before anything is changed; without an answer the drive is not in use."""
+        """Raise if the motor is on, before anything is changed. A drive that does not answer is not in use."""
         if timeout is None:
             on = self._status().motor_on
         else:
@@ -343,7 +341,7 @@ class ElmoDrive:
         return DriveStatus.of(int(self._link.ask(Command(letters="SR")).value))
 
     def _ask_analog_in_turn(self) -> None:
-        """Ask for the torque sensor in every few cycles; the answer may take some cycles, but not many."""
+        """Query the torque sensor every few cycles. The answer may take some cycles, but not many."""
         source = self.options.torque
         if not isinstance(source, AnalogInput) or self._cycle % source.every:
             return
@@ -360,7 +358,7 @@ class ElmoDrive:
         self._link.command(Command(letters="AN", index=source.number))
 
     def _look_alive(self) -> None:
-        """Check the drive's heartbeat after the answer to a SYNC: earlier heartbeats have been read."""
+        """Check the drive's heartbeat after the answer to a SYNC, because earlier heartbeats have been read by then."""
         silent = self._link.clock.now() - self._link.heard
         if silent > self.options.heartbeat:
             raise DriveFaultError(
@@ -379,10 +377,10 @@ class ElmoDrive:
             self._link.wait(lambda: seen.readings > self._unheard, timeout, missing, kind="sensor")
 
     def _settle(self, timeout: float) -> None:
-        """Wait for the answer to the last SYNC before the next: an answer does not name its SYNC.
+        """Wait for the answer to the last SYNC before the next SYNC, because an answer does not name its SYNC.
 
-        An answer that is lost is given up after one period more. Should it come after all, it is taken for
-        the next one, and that one is then too many: this is a fault too.
+        Give up a missing answer after one more period. If it arrives later, it is taken for the answer to the
+        next SYNC. The true answer to that SYNC is then one too many, which is a fault too.
         """
         seen, now = self._seen, self._link.clock.now()
         if seen.surplus and now - self._given_up < self.options.heartbeat:

@@ -1,4 +1,4 @@
-"""The drive type "elmo": options from a joint file, the drive opened or emulated, its frame log decoded."""
+"""The drive type "elmo": read options from a joint file, open or emulate the drive, decode its frame log."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _WIRING = ("node", "counts_per_turn", "torque")
 
 
 class ElmoType(DriveType):
-    """An Elmo SimplIQ drive on CANopen; `[session.torque]` describes the torque sensor."""
+    """An Elmo SimplIQ drive on CANopen. `[session.torque]` describes the torque sensor."""
 
     tables = ("torque",)
 
@@ -67,7 +67,7 @@ class ElmoType(DriveType):
 
     @contextmanager
     def emulate(self, bench: Bench, seed: int) -> Iterator[ElmoDrive]:
-        """Yield the drive on an emulated bus with a clock of its own."""
+        """Yield the drive on an emulated bus with its own clock."""
         emulation = elmo_emulation(bench)
         with EmulatedBus(
             *elmo_devices(bench, seed),
@@ -79,15 +79,15 @@ class ElmoType(DriveType):
             yield ElmoDrive(emulated, bench.joint, bench.drive)
 
     def emulation(self, table: Table) -> ElmoEmulation:
-        """Return what the emulated drive does to a command."""
+        """Return how the emulated drive handles a command."""
         return table.make(ElmoEmulation)
 
     def devices(self, bench: Bench, seed: int) -> tuple[Device, ...]:
-        """Return the drive, and the torque sensor's converter if there is one."""
+        """Return the drive, and the torque sensor's converter if the bench has one."""
         return elmo_devices(bench, seed)
 
     def metadata(self, options: ElmoOptions) -> dict[str, Any]:
-        """Return the options as JSON's types."""
+        """Return the options as JSON types."""
         return elmo_options_document(options)
 
     def wiring(self, options: ElmoOptions) -> dict[str, Any]:
@@ -96,7 +96,7 @@ class ElmoType(DriveType):
         return {name: document[name] for name in _WIRING if name in document}
 
     def recorded_options(self, metadata: Mapping[str, Any]) -> ElmoOptions:
-        """Return the options that a recording names."""
+        """Return the options in a recording's metadata."""
         return elmo_options_of(metadata)
 
     def decode(
@@ -106,7 +106,7 @@ class ElmoType(DriveType):
         options: ElmoOptions,
         identity: Mapping[str, Any],
     ) -> Sequence[LoggedCycle]:
-        """Return the cycles: a SYNC, its answers, a command and our heartbeat each."""
+        """Return the cycles. Each has a SYNC, its answers, a command and our heartbeat."""
         if joint.torque_constant is None:
             raise InputError(
                 "missing; without it the recorded commands are no torques",

@@ -1,4 +1,4 @@
-"""Replies to the torque commands, compared with what was sent: the drive does what we command, and only that."""
+"""Compare the replies to torque commands with the commands sent, to detect lost or foreign commands."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from collections import deque
 from jointid.hardware.session.drive import DriveFaultError
 
 _MOST_MISSING = 5  # commands in a row without their echo
-_ROUNDING = 1e-6  # of a 32-bit float, relative; also absolute [A]
+_ROUNDING = 1e-6  # relative, of a 32-bit float; also absolute [A]
 
 
 class CommandEchoes:
-    """The drive answers each TC by its value; these answers are compared with the commands.
+    """Compare the drive's replies to TC with the commands. Each reply repeats the commanded value.
 
     Attributes
     ----------
     lost : int
-        Echoes, or commands, that were lost one by one: a later one was answered.
+        Lost single echoes or commands: a later command was answered.
     """
 
     def __init__(self) -> None:
@@ -27,26 +27,26 @@ class CommandEchoes:
         self.lost = 0
 
     def begin(self) -> None:
-        """The motor is on at zero torque; commands follow."""
+        """Start: the motor is on at zero torque, and commands follow."""
         self._waiting.clear()
         self._last, self._compares, self.lost = 0.0, True, 0
 
     def end(self) -> None:
-        """The motor is being switched off."""
+        """Stop: the motor is being switched off."""
         self._compares = False
 
     def sent(self, current: float) -> None:
-        """A command [A]."""
+        """Note a sent command [A]."""
         if self._compares:
             self._waiting.append(current)
 
     @property
     def confirmed(self) -> bool:
-        """Whether every command has been answered by now; by the next sample the last one should have been."""
+        """Whether every command has been answered. The last answer is due by the next sample."""
         return not self._waiting
 
     def came(self, current: float) -> str:
-        """Compare an echo [A]; returns what is wrong with it, empty when nothing is."""
+        """Compare an echo [A] with the commands. Return the problem; empty when there is none."""
         if not self._compares:
             return ""
         for place, wanted in enumerate(self._waiting):
@@ -56,7 +56,7 @@ class CommandEchoes:
                 self.lost += place
                 return "" if place < _MOST_MISSING else self._unanswered(place)
         if self._last is not None and current == self._last:
-            return ""  # a frame that came twice
+            return ""  # duplicate frame
         wanted_text = f", sent was {self._waiting[0]:.6g} A" if self._waiting else ""
         return (
             f"the drive acknowledges TC = {current:.6g} A{wanted_text}: a command was changed in transmission, or "
@@ -64,14 +64,14 @@ class CommandEchoes:
         )
 
     def check(self) -> None:
-        """See that echoes come.
+        """Check that echoes arrive.
 
         Raises
         ------
         DriveFaultError
             "command_echo": five commands in a row were not answered.
         """
-        missing = len(self._waiting) - 1  # the newest may still be on its way
+        missing = len(self._waiting) - 1  # the echo of the newest command may not have arrived yet
         if missing >= _MOST_MISSING:
             raise DriveFaultError(
                 "command_echo",

@@ -1,4 +1,4 @@
-"""An emulated bench: the drive and the converter of a bench, moving a simulated joint."""
+"""An emulated bench: the emulated drive and converter move a simulated joint."""
 
 from __future__ import annotations
 
@@ -15,25 +15,25 @@ from jointid.simulation.plant import torque_limit
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElmoEmulation:
-    """What an emulated drive does to a command, and how it is wired in truth.
+    """Behavior of an emulated drive and its true wiring.
 
-    The joint file says how the bench should be; with these a wrong bench is emulated.
+    The joint file describes the bench as it should be. These values emulate a bench with errors.
 
     Attributes
     ----------
     idle_loop : float
         Time between two interpreter commands of the drive [s]. Default 0.0003.
-    mantissa_bits : int
+    Bits of a current command that the drive keeps: 24 for a float, 4 over the thesis's link. Default 24.
         Bits of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Default 24.
     idle_jitter : float
         Largest random addition to `idle_loop` [s]. Default 0.
     enable_time : float
-        From MO=1 until the motor is on [s]: a brake opens, commutation is found. Default 0.
+        Time from MO=1 until the motor is on [s], for brake release and commutation. Default 0.
     brake : float
-        Torque at the output of a brake that closes when the motor is off [N·m]. Default 0: none, and a load
-        falls.
+        Torque at the joint of a brake that closes when the motor is off [N·m]. Default 0: no brake, and a
+        load falls.
     clock_drift : float
-        How much faster the host's clock is than the drive's, as a share: 1e-4 is 100 ppm. Default 0.
+        Relative speed error of the host's clock against the drive's; positive: host fast. 1e-4 is 100 ppm. Default 0.
     jitter : float
         Largest random delay of the host after each wait [s]. Default 0.
     torque_sign : float
@@ -45,7 +45,7 @@ class ElmoEmulation:
     gear_ratio : float, optional
         True gear ratio. Default: the joint file's.
     sensor_sign : float
-        1, or -1: the torque sensor reads less for a positive torque. Default 1.
+        1, or -1: the torque sensor's reading decreases with a positive torque. Default 1.
     peak_current : float, optional
         PL[1] of the drive [A]. Default: as the joint file's torque or current limit allows.
 
@@ -104,7 +104,7 @@ class ElmoEmulation:
 
 
 def elmo_emulation(bench: Bench) -> ElmoEmulation:
-    """Return what a bench's emulated drive does; the defaults where its joint file says nothing."""
+    """Return the behavior of a bench's emulated drive. Default where the joint file sets nothing."""
     found = bench.emulation.drive if bench.emulation is not None else None
     return found if found is not None else ElmoEmulation()
 
@@ -123,7 +123,7 @@ def elmo_devices(
     Raises
     ------
     InputError
-        The bench does not describe an emulated joint, or not completely.
+        The bench does not describe an emulated joint completely.
     """
     emulation = elmo_emulation(bench)
     joint = true_joint(bench, gear_ratio=emulation.gear_ratio)
@@ -146,7 +146,7 @@ def elmo_devices(
     source = bench.drive.torque
     settings = ElmoSettings(
         node=bench.drive.node,
-        # Signs that the drive does not know of are in what it knows: counts fall, current pulls back.
+        # The drive does not know these signs, so they change its data: counts fall, current acts backward.
         counts_per_turn=int(emulation.encoder_sign) * bench.drive.counts_per_turn,
         gear_ratio=joint.gear_ratio,
         torque_constant=emulation.torque_sign * emulation.torque_scale * joint.torque_constant,

@@ -1,4 +1,4 @@
-"""An emulated analog-to-digital node: it converts the torque sensor's voltage at each SYNC."""
+"""An emulated analog-to-digital node that converts the torque sensor's voltage at each SYNC."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ if TYPE_CHECKING:
 
 
 class EmulatedConverter:
-    """Sends the sum of its conversions as a 32-bit integer, at each SYNC.
+    """Send the sum of the conversions as a 32-bit integer at each SYNC.
 
     Parameters
     ----------
     drive : EmulatedElmo
-        Whose joint has the sensor.
+        The drive that moves the joint with the sensor.
     scaling : SensorScaling
-        Between voltage and reading.
+        Relation between voltage and reading.
     identifier : int
         COB-ID of its frame.
     bits, lowest, highest : int, float, float
-        Bits of the converter, and its range [V].
+        Resolution of the converter, and its range [V].
     conversions : int
-        Summed for one frame.
+        Number of conversions in one frame's sum.
     """
 
     def __init__(
@@ -58,7 +58,7 @@ class EmulatedConverter:
         self._bus = bus
 
     def receive(self, message: can.Message) -> None:
-        """Convert at a SYNC."""
+        """Convert and send if the frame is a SYNC."""
         if message.arbitration_id != SYNC or self._bus is None:
             return
         self._drive.advance()
@@ -71,7 +71,7 @@ class EmulatedConverter:
         )
 
     def _converted(self, voltage: float) -> bytes:
-        """The sum of conversions dithered evenly over a step, which a noisy signal does by itself."""
+        """Return the sum of the conversions. They are dithered evenly over a step, as noise does in a real signal."""
         share = (voltage - self._lowest) / (self._highest - self._lowest) * self._levels
         total = math.floor(share * self._conversions)
         highest = (self._levels - 1) * self._conversions

@@ -1,4 +1,4 @@
-"""An emulated Elmo SimplIQ drive: the same frames, limits and refusals, moving a simulated joint."""
+"""An emulated Elmo SimplIQ drive that moves a simulated joint, with the same frames, limits and refusals."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ if TYPE_CHECKING:
 
 __all__ = ["ElmoSettings", "EmulatedElmo"]
 
-_PERIOD_OF_GUARDS = 0.5e-3  # [s] between looks at speed and heartbeat
+_PERIOD_OF_GUARDS = 0.5e-3  # [s] between two checks of speed and heartbeat
 
 
 class EmulatedElmo(ElmoMotor):
-    """One drive with its motor, gear, joint and encoder.
+    """An emulated drive with its motor, gear, joint and encoder.
 
     Parameters
     ----------
     joint : SteppedJoint
-        Moved by the motor.
+        Joint that the motor moves.
     settings : ElmoSettings
     """
 
@@ -38,14 +38,14 @@ class EmulatedElmo(ElmoMotor):
         self._interpreter = Interpreter(
             self,
             lambda subindex: self.objects.number(0x1018, subindex),
-            lambda payload: self.reply(payload),  # asked for each time: faults replace it
+            lambda payload: self.reply(payload),  # faults replace `reply`
         )
         self.objects = ElmoObjects(self, self._interpreter)
         self._network = ElmoNetwork(self, self.objects, self._interpreter, self._reset)
 
     @property
     def state(self) -> str:
-        """Of the network: "pre-operational", "operational" or "stopped"."""
+        """Network state: "pre-operational", "operational" or "stopped"."""
         return self._network.state
 
     @state.setter
@@ -53,18 +53,18 @@ class EmulatedElmo(ElmoMotor):
         self._network.state = state
 
     def attach(self, bus: DeviceBus) -> None:
-        """Power up: a boot-up message, then guards look at speed and heartbeat."""
+        """Power up: send the boot-up message, then check speed and heartbeat regularly."""
         self._bus = bus
         self._network.boot()
         bus.at(bus.now() + _PERIOD_OF_GUARDS, self._guard)
 
     def receive(self, message: can.Message) -> None:
-        """A frame has arrived."""
+        """Take a frame from the bus."""
         self.advance()
         self._network.receive(message)
 
     def condition(self) -> dict[str, Any]:
-        """What a `Journal` tells: state, motor and failure (MF) as events, and where the joint is."""
+        """Return the condition for a `Journal`: state, motor and failure (MF) as events, and the joint's position."""
         return {
             "events": {
                 "state": self.state,
@@ -78,12 +78,12 @@ class EmulatedElmo(ElmoMotor):
         }
 
     def acknowledge(self) -> None:
-        """Clear what the motor was shut down for, and say that it is gone."""
+        """Clear the failure that switched the motor off, and report that it is gone."""
         super().acknowledge()
         self._network.emergencies.vanish()
 
     def fail(self, kind: str) -> None:
-        """Shut the motor down, with a failure in MF and, where 2F21h asks for it, an emergency.
+        """Switch the motor off, with a failure in MF. Send an emergency if 2F21h requests it.
 
         Parameters
         ----------
@@ -99,13 +99,13 @@ class EmulatedElmo(ElmoMotor):
         self._network.emergencies.appear(emergency, error_register(emergency), told=told)
 
     def restart(self) -> None:
-        """As if its supply had failed for a moment."""
+        """Restart as after a short power failure."""
         self.advance()
         self.failure = self.problem = 0
         self._network.command(canopen.RESET_NODE)
 
     def reply(self, payload: bytes) -> None:
-        """Publish a result of the interpreter's."""
+        """Publish a result of the interpreter."""
         self._network.reply(payload)
 
     def _reset(self, application: bool) -> None:

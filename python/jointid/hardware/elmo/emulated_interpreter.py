@@ -1,4 +1,4 @@
-"""The interpreters of an emulated drive, binary and of text: a queue, refusals, answers."""
+"""The binary and the text interpreter of an emulated drive: command queue, refusals, answers."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ from jointid.hardware.elmo.emulated_registers import (
 )
 
 VERSION = "Cello 2.02.00.00 emulated"
-_TEXTS = {"VR": VERSION}  # which four bytes cannot hold
+_TEXTS = {"VR": VERSION}  # values that do not fit in four bytes
 _TEXT = re.compile(r"([A-Z]{2})(?:\[(\d+)\])?(?:=([-+.\deE]+))?;?\s*")
 # Status of 1023h:2.
 NO_REPLY, REPLY, ERROR_REPLY = 0, 1, 3
 
 
 class Interpreter:
-    """Takes one command after the other, in the drive's idle loop.
+    """Execute one command after the other, in the drive's idle loop.
 
     Parameters
     ----------
     motor : ElmoMotor
     identity : callable
-        As `registers` takes it.
+        As in `registers`.
     reply : callable
         Publishes a result.
     """
@@ -55,11 +55,11 @@ class Interpreter:
         self.text_status, self.text = NO_REPLY, b""
 
     def forget(self) -> None:
-        """What waits is lost with a restart."""
+        """Drop the waiting commands, as a restart does."""
         self._waiting.clear()
 
     def take(self, payload: bytes) -> None:
-        """A binary command's frame has arrived; it waits for the idle loop."""
+        """Queue the frame of a binary command until the idle loop runs."""
         try:
             command = Command.of(payload)
         except InputError:
@@ -70,7 +70,7 @@ class Interpreter:
             self._begin()
 
     def take_text(self, given: bytes) -> None:
-        """Take a command of the text interpreter, e.g. ``VR`` or ``PL[1]``; its answer is kept."""
+        """Execute a command of the text interpreter, e.g. ``VR`` or ``PL[1]``, and keep its answer."""
         wording = given.rstrip(b"\0").decode("latin-1").strip().upper()
         match = _TEXT.fullmatch(wording)
         if match is None:
@@ -123,7 +123,7 @@ class Interpreter:
             self._begin()
 
     def _done(self, letters: str, index: int, value: Number | None) -> tuple[int, Number]:
-        """Read or assign; EC, 0 if nothing is wrong, and the value of the answer."""
+        """Read or assign a value. Return EC (0: no error) and the answer's value."""
         register = self._registers.get(letters)
         if register is None:
             return (NO_MEANING if letters in _TEXTS else BAD_COMMAND), 0
@@ -145,7 +145,7 @@ def _number(wording: str) -> Number:
 
 
 def _payload(command: Command, value: int | float) -> bytes:
-    """A reply's bytes, also of a value that is not finite."""
+    """Return the bytes of a reply, also for a value that is not finite."""
     if isinstance(value, float) and not math.isfinite(value):
         head = Reply(letters=command.letters, index=command.index, value=0.0).payload()[:4]
         return head + struct.pack("<f", value)

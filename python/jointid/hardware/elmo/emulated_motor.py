@@ -14,16 +14,16 @@ if TYPE_CHECKING:
     from jointid.hardware.emulated.device import DeviceBus
 
 TWO_PI = 2.0 * math.pi
-_WIDEST = 2**31  # counts that 32 bits hold, each way
+_WIDEST = 2**31  # largest absolute count that 32 bits hold
 
 
 class ElmoMotor:
-    """A motor and what it moves, without the drive's bus and interpreters.
+    """A motor and the joint that it moves, without the drive's bus and interpreters.
 
     Parameters
     ----------
     joint : SteppedJoint
-        Moved by the motor.
+        Joint that the motor moves.
     settings : ElmoSettings
     """
 
@@ -38,24 +38,24 @@ class ElmoMotor:
         self.speed_bounds: list[float | None] = [
             None,
             None,
-        ]  # LL[2], HL[2]; None: as in the settings
+        ]  # LL[2], HL[2]; None: from the settings
         self.modulo = list(self.settings.modulo)
         self.failure = 0
-        self.problem = 0  # of the power stage, as in SR
-        # Faults on demand; set them at a time with the bus's `at`.
+        self.problem = 0  # problem of the power stage, as in SR
+        # Faults for tests; set them at a time with the bus's `at`.
         self.stuck_encoder: int | None = None
-        self.count_offset = 0  # since PX was set
+        self.count_offset = 0  # counts added since PX was set
         self.slipped_counts = 0
         self.fixed_unit_mode: int | None = None
         self.stage_gain = 1.0
         self.stuck_voltage: float | None = None
         self.silent_heartbeat = False
-        # What has happened, for tests.
+        # History for tests.
         self.torque_commands: list[tuple[float, float]] = []
         self.switchings: list[tuple[float, bool]] = []
         self._bus: DeviceBus | None = None
         self._time = 0.0
-        self._held = False  # by the brake
+        self._held = False  # whether the brake holds the joint
         self.power = PowerStates(
             lambda: self.motor_on,
             lambda: bool(self.failure),
@@ -65,12 +65,12 @@ class ElmoMotor:
 
     @property
     def bus(self) -> DeviceBus:
-        """The bus to which it is connected."""
+        """Bus to which the drive is connected."""
         assert self._bus is not None, "attach the drive to a bus"
         return self._bus
 
     def advance(self) -> None:
-        """Bring the joint to the bus's time."""
+        """Advance the joint to the bus's time."""
         now = self.bus.now()
         duration = now - self._time
         if duration <= 0.0:
@@ -85,10 +85,10 @@ class ElmoMotor:
             before = self.joint.velocity
             if before:
                 self.joint.advance(-math.copysign(self.settings.brake, before), duration)
-            self._held = before * self.joint.velocity <= 0.0  # it stands, and is not pushed back
+            self._held = before * self.joint.velocity <= 0.0  # it stops and stays
 
     def counts(self) -> int:
-        """Encoder counts of the motor; an encoder that hangs repeats them. They wrap as the drive's do."""
+        """Return the encoder counts of the motor. They wrap as the drive's do; a stuck encoder repeats them."""
         if self.stuck_encoder is not None:
             return self.stuck_encoder
         angle = self.joint.position - self.settings.position_offset
@@ -100,21 +100,21 @@ class ElmoMotor:
         return (found - lowest) % (highest - lowest) + lowest
 
     def speed(self) -> int:
-        """Of the motor [counts/s]."""
+        """Return the speed of the motor [counts/s]."""
         if self._held:
             return 0
         per_radian = self.settings.counts_per_turn * self.settings.gear_ratio / TWO_PI
         return max(-_WIDEST, min(_WIDEST - 1, round(self.joint.velocity * per_radian)))
 
     def voltage(self) -> float:
-        """At the analog input [V]."""
+        """Return the voltage at the analog input [V]."""
         if self.stuck_voltage is not None:
             return self.stuck_voltage
         reading = self.joint.observe().reading
         return self.settings.analog.voltage(reading, self.joint.position)
 
     def status(self) -> int:
-        """SR."""
+        """Return the status register SR."""
         return (
             bool(self.problem)
             | self.problem << 1
@@ -126,17 +126,17 @@ class ElmoMotor:
 
     @property
     def rated_current(self) -> float:
-        """By which 6077h is scaled [A]."""
+        """Current that scales 6077h [A]."""
         rated = self.settings.rated_current
         return self.current_limits[1] if rated is None else rated
 
     @property
     def rated_torque(self) -> float:
-        """Of the motor at its rated current [N·m]."""
+        """Motor torque at the rated current [N·m]."""
         return self.rated_current * abs(self.settings.torque_constant)
 
     def share_of_rated(self) -> int:
-        """The current in thousandths of the rated one; 0 where that is 0."""
+        """Return the current in thousandths of the rated current; 0 if the rated current is 0."""
         if not self.rated_current:
             return 0
         share = 1000.0 * self.current / self.rated_current
@@ -144,23 +144,23 @@ class ElmoMotor:
 
     @property
     def current_limited(self) -> bool:
-        """Whether the current is more than the drive gives for long."""
+        """Whether the current is above the continuous limit."""
         return abs(self.current) > self.current_limits[1]
 
     def command_current(self, current: float) -> None:
-        """Let a current flow [A], as the power stage does it."""
+        """Set the current [A], limited as the power stage limits it."""
         self.current = self.stage_gain * current
         self.torque_commands.append((self.bus.now(), self.current))
 
     def limit_current(self) -> None:
-        """Cut the current that flows, when PL[1] is set below it."""
+        """Reduce the present current after PL[1] is set below it."""
         peak = self.current_limits[0]
         if abs(self.current) > peak:
             self.current = math.copysign(peak, self.current)
             self.torque_commands.append((self.bus.now(), self.current))
 
     def switch(self, *, on: bool) -> None:
-        """Motor on or off, at no current."""
+        """Switch the motor on or off, at zero current."""
         if on != self.motor_on:
             self.switchings.append((self.bus.now(), on))
         self.motor_on, self.current = on, 0.0
@@ -168,7 +168,7 @@ class ElmoMotor:
             self.acknowledge()
 
     def acknowledge(self) -> None:
-        """Clear what the motor was shut down for."""
+        """Clear the failure that switched the motor off."""
         self.failure = 0
 
     def _switch_by_word(self, on: bool) -> None:

@@ -17,15 +17,15 @@ from jointid.hardware.emulated.object_dictionary import AccessError
 if TYPE_CHECKING:
     from jointid.hardware.emulated.pdo import Pdo
 
-# Bits of 2F21h: which emergencies are sent.
+# Bits of 2F21h: the emergencies to send.
 HEARTBEAT_EVENT, MOTOR_EVENT = 3, 7
-_HEARTBEAT_LOST = 0x800  # in MF
+_HEARTBEAT_LOST = 0x800  # bit of MF
 _PROTOCOL_EVENT, _UNCONFIGURED_EVENT, _OBJECT_EVENT = 1, 2, 8
-_INTERPRETER = (0x20120040,)  # what the PDO of the binary interpreter's commands is mapped to
+_INTERPRETER = (0x20120040,)  # mapping of the PDO for the binary interpreter's commands
 
 
 class ElmoNetwork:
-    """Takes frames from the bus, and sends what the drive has to say.
+    """Receive frames from the bus and send the drive's frames.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class ElmoNetwork:
     objects : ElmoObjects
     interpreter : Interpreter
     reset : callable
-        Called at a reset; with True where the application is reset, too.
+        Called at a reset; with True if the application is reset, too.
     """
 
     def __init__(
@@ -47,9 +47,9 @@ class ElmoNetwork:
         self._reset = reset
         self.state = "pre-operational"
         self.emergencies = Emergencies(motor.settings.node, objects, self._alarm)
-        self._at_sync: dict[int, bytes] = {}  # of received PDOs that wait for a SYNC
+        self._at_sync: dict[int, bytes] = {}  # payloads of received PDOs that wait for a SYNC
         self._heartbeat_seen: float | None = None
-        self._silent = False  # the host's heartbeat has stayed away
+        self._silent = False  # whether the host's heartbeat is missing
         self._next_heartbeat = 0.0
 
     def boot(self) -> None:
@@ -57,7 +57,7 @@ class ElmoNetwork:
         self.send(canopen.heartbeat_id(self._motor.settings.node), b"\x00")
 
     def receive(self, message: can.Message) -> None:
-        """A frame has arrived."""
+        """Take a frame from the bus."""
         node = self._motor.settings.node
         if message.is_remote_frame or message.is_extended_id or message.is_error_frame:
             return
@@ -79,7 +79,7 @@ class ElmoNetwork:
                     self._take(number, pdo, payload)
 
     def command(self, command: int) -> None:
-        """Obey a network command."""
+        """Execute a network command."""
         if command == canopen.START:
             self.state = "operational"
         elif command == canopen.STOP:
@@ -98,11 +98,11 @@ class ElmoNetwork:
             self._alert(_PROTOCOL_EVENT, 0x8200, 0x11)
 
     def forget_heartbeat(self) -> None:
-        """Watch anew from the next heartbeat on."""
+        """Wait again for the first heartbeat of the host."""
         self._heartbeat_seen, self._silent = None, False
 
     def reply(self, payload: bytes) -> None:
-        """Publish a result of the interpreter's."""
+        """Publish a result of the interpreter."""
         objects = self._objects
         objects.result = payload
         for number, pdo in enumerate(objects.sent):
@@ -110,7 +110,7 @@ class ElmoNetwork:
                 self._send_pdo(pdo.identifier, pdo.content())
 
     def look(self, now: float) -> None:
-        """Look at clocks: the host's heartbeat, the drive's own, event timers."""
+        """Check the timers: the host's heartbeat, the drive's own heartbeat, event timers."""
         objects = self._objects
         seen, allowed = self._heartbeat_seen, objects.consumer_time
         if seen is not None and allowed and now - seen > allowed:
@@ -125,7 +125,7 @@ class ElmoNetwork:
                 self._send_pdo(pdo.identifier, pdo.content())
 
     def send(self, identifier: int, payload: bytes) -> None:
-        """Put a frame on the bus."""
+        """Send a frame on the bus."""
         self._motor.bus.transmit(
             can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
         )
@@ -142,7 +142,7 @@ class ElmoNetwork:
                 self.emergencies.vanish()
 
     def _heartbeat_lost(self) -> None:
-        """Do what 6007h asks of the motor, 2F21h of the emergency and 1029h of the network state."""
+        """Apply 6007h to the motor, 2F21h to the emergency and 1029h to the network state."""
         self._heartbeat_seen, self._silent = None, True
         self.lose_host()
         self._alert(HEARTBEAT_EVENT, 0x8130, 0x11)
@@ -157,14 +157,14 @@ class ElmoNetwork:
         self.abort_connection()
 
     def lose_host(self) -> None:
-        """The host's heartbeat has stayed away: do with the motor what 6007h says."""
+        """React to a missing host heartbeat: do with the motor what 6007h sets."""
         if self._objects.value(0x6007, 0):
             self._motor.advance()
             self._motor.switch(on=False)
             self._motor.failure = _HEARTBEAT_LOST
 
     def abort_connection(self) -> None:
-        """The node is stopped or reset: do with the motor what 6007h says (CiA 402)."""
+        """React to a stop or reset of the node: do with the motor what 6007h sets (CiA 402)."""
         option = self._objects.value(0x6007, 0)
         if option and self._motor.motor_on:
             self._motor.switch(on=False)
@@ -186,12 +186,12 @@ class ElmoNetwork:
 
     def _take(self, number: int, pdo: Pdo, payload: bytes) -> None:
         if pdo.kind == 1:
-            self._at_sync[number] = payload  # a later one takes its place
+            self._at_sync[number] = payload  # a later payload replaces it
         else:
             self._write(pdo, payload)
 
     def _write(self, pdo: Pdo, payload: bytes) -> None:
-        if pdo.mapped == _INTERPRETER:  # whose commands have four bytes or eight
+        if pdo.mapped == _INTERPRETER:  # its commands have four or eight bytes
             self._interpreter.take(payload)
         elif not pdo.mapped or 8 * len(payload) < sum(entry & 0xFF for entry in pdo.mapped):
             self._alert(_UNCONFIGURED_EVENT, 0x8210, 0x21)

@@ -1,6 +1,6 @@
-"""The object dictionary of an emulated Elmo drive: CiA 301's objects, CiA 402's and Elmo's own.
+"""The object dictionary of an emulated Elmo drive: objects of CiA 301, of CiA 402 and of Elmo.
 
-After Elmo's CANopen DS 301 implementation guide (MAN-CAN301IG); what it leaves open is as in CiA 301 and 402.
+Source: Elmo's CANopen DS 301 implementation guide (MAN-CAN301IG). Where it is silent: CiA 301 and 402.
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ _SERVO = 0x00020192  # 1000h: a servo drive after CiA 402
 _NO_REMOTE = 0x40000000  # in a PDO's COB-ID: no remote frames
 _TYPES_SENT = frozenset({*range(241), *EVENT})
 _TYPES_RECEIVED = frozenset({1, *EVENT})
-_WATCHED = 1  # heartbeats at most
+_WATCHED = 1  # largest number of watched heartbeats
 _SIGNATURES = {0x1010: 0x65766173, 0x1011: 0x64616F6C}  # "save", "load"
-_BINARY_RESULT = 0x80000000  # of 2F20h:2: TPDO2 is sent when the interpreter has done a command
-# Objects of CiA 402 that are kept and do nothing: the binary interpreter moves this drive.
+_BINARY_RESULT = 0x80000000  # bit of 2F20h:2: send TPDO2 after each executed command
+# Objects of CiA 402 that only store a value, because the binary interpreter moves this drive.
 _MODES = (-1, 1, 3, 4, 6)
 
 
 class ElmoObjects(ObjectDictionary):
-    """Objects of one drive, and what they stand for.
+    """Objects of one drive and their functions.
 
     Parameters
     ----------
@@ -43,13 +43,13 @@ class ElmoObjects(ObjectDictionary):
         super().__init__()
         self._motor, self._interpreter = motor, interpreter
         self._server = SdoServer(self)
-        self.result = bytes(8)  # 2013h: of the binary interpreter
+        self.result = bytes(8)  # 2013h: result of the binary interpreter
         self._identify()
         self._watch()
         self._measure()
         self._control()
         node, settings = motor.settings.node, motor.settings
-        # The interpreter's frames may have other identifiers than the node's own.
+        # The interpreter's frames may have other identifiers than the defaults of the node.
         received = [OFF | 0x200 + node, settings.command_id, OFF | 0x400 + node, OFF | 0x500 + node]
         sent = [OFF | 0x180 + node, settings.reply_id, OFF | 0x380 + node, OFF | 0x480 + node]
         taken = [(0x60400010,), (0x20120040,), (), ()]
@@ -76,42 +76,42 @@ class ElmoObjects(ObjectDictionary):
         ]
 
     def reset(self) -> None:
-        """As after power-up; also a reset of the communication does that."""
+        """Restore the state after power-up. A reset of the communication does the same."""
         super().reset()
         self._server.forget()
         for pdo in (*self.received, *self.sent):
             pdo.reset()
 
     def answer(self, payload: bytes) -> bytes | None:
-        """Return the answer to an SDO frame; None where it asks for none."""
+        """Return the answer to an SDO frame; None if it needs no answer."""
         return self._server.answer(payload)
 
     @property
     def master(self) -> int:
-        """The node whose heartbeat is watched."""
+        """Node with the watched heartbeat."""
         return self.value(0x1016, 1) >> 16 & 0x7F
 
     @property
     def consumer_time(self) -> float:
-        """Time for which that heartbeat may be missing [s]; 0: without limit."""
+        """Longest allowed gap of that heartbeat [s]; 0: no limit."""
         return (self.value(0x1016, 1) & 0xFFFF) * 1e-3 if self.master else 0.0
 
     @property
     def producer_time(self) -> float:
-        """Between two heartbeats of the drive's own [s]; 0: it sends none."""
+        """Time between two heartbeats of the drive [s]; 0: it sends none."""
         return self.value(0x1017, 0) * 1e-3
 
     def replies(self, number: int) -> bool:
-        """Whether a PDO, counted from 0, is sent when the interpreter has a result."""
+        """Return whether a PDO, counted from 0, is sent when the interpreter has a result."""
         return bool(self.value(0x2F20, number + 1) & _BINARY_RESULT)
 
     def number(self, index: int, subindex: int) -> int:
-        """The number that an object holds."""
+        """Return the value of a numeric object."""
         entry = self.entry(index, subindex)
         return int.from_bytes(self.read(index, subindex), "little", signed=entry.signed)
 
     def emergency_wanted(self, bit: int) -> bool:
-        """Whether 2F21h lets an event's emergency through."""
+        """Return whether 2F21h enables the emergency of an event."""
         return bool(self.value(0x2F21, 0) >> bit & 1)
 
     # The entries.
@@ -156,10 +156,10 @@ class ElmoObjects(ObjectDictionary):
             self.add(index, 0, Entry(size=size, signed=signed, read=read, sent=True))  # type: ignore[arg-type]
 
         measured(0x6041, 2, motor.power.status, signed=False)
-        measured(0x6064, 4, lambda: motor.counts())  # asked for each time: faults replace it
+        measured(0x6064, 4, lambda: motor.counts())  # faults replace `counts`
         for index in (0x6069, 0x606B, 0x606C):
             measured(index, 4, lambda: motor.speed())
-        for index in (0x6074, 0x6077, 0x6078):  # torque asked for, torque and current measured
+        for index in (0x6074, 0x6077, 0x6078):  # torque: commanded, measured; current: measured
             measured(index, 2, motor.share_of_rated)
         measured(0x6079, 4, lambda: round(1e3 * motor.settings.supply), signed=False)
         self.add(0x6075, 0, Entry(size=4, read=lambda: round(1e3 * motor.rated_current)))
@@ -194,6 +194,6 @@ class ElmoObjects(ObjectDictionary):
 
 
 def _signed(value: int, signature: int) -> None:
-    """Refuse to store or restore without the signature; with it nothing changes: nothing is kept here."""
+    """Refuse to store or restore without the signature. With it nothing changes, because nothing is stored here."""
     if value != signature:
         raise AccessError(NOT_STORED)

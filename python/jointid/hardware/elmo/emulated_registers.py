@@ -1,7 +1,7 @@
-"""The commands of an emulated Elmo drive's interpreters: what each reads, sets and refuses.
+"""The commands of an emulated Elmo drive's interpreters: values they read and set, and refusals.
 
-After Elmo's SimplIQ command reference (MAN-SIMCR). What a command does beyond what a session needs, e.g.
-a profile's acceleration, is kept and has no effect.
+Source: Elmo's SimplIQ command reference (MAN-SIMCR). Parameters that a session does not need, e.g. a
+profile's acceleration, are stored and have no effect.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from jointid.hardware.elmo.emulated_motor import ElmoMotor
 
 Number = int | float
 Read = Callable[[int], Number]
-Write = Callable[[int, Number], int]  # returns EC, 0 when it is done
+Write = Callable[[int, Number], int]  # returns EC, 0 without an error
 
 # EC.
 BAD_COMMAND, BAD_INDEX, NO_MEANING, UNIT_MODE_NEEDED = 2, 3, 5, 12
@@ -29,12 +29,12 @@ _WIDEST = 2**31
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Register:
-    """One command.
+    """One command of the drive.
 
     Attributes
     ----------
     read : callable
-        Returns the value at an index; of a command that acts, does so and returns 0.
+        Returns the value at an index. A command that acts is executed and returns 0.
     write : callable, optional
         Assigns a value at an index and returns EC. Default: it cannot be assigned.
     indices : tuple of int
@@ -54,9 +54,9 @@ def registers(
     ----------
     motor : ElmoMotor
     identity : callable
-        Returns vendor, product, revision or serial number, 1 to 4 (1018h).
+        Returns an entry of 1018h: vendor, product, revision or serial number, for 1 to 4.
     last_error : callable
-        EC of the last command that was refused.
+        Returns EC of the last refused command.
     """
     kept = _Kept(motor)
     limits = _Limits(motor)
@@ -82,7 +82,7 @@ def registers(
         "SN": Register(read=lambda index: _wrapped(identity(index)), indices=(1, 2, 3, 4)),
         "AN": Register(read=lambda index: _analog(motor, index), indices=tuple(range(1, 7))),
         "TI": Register(read=lambda _: round(motor.settings.temperature), indices=(1, 2)),
-        "BV": Register(read=lambda _: 100),  # [V], the most that it stands
+        "BV": Register(read=lambda _: 100),  # [V], highest supply voltage
         "IP": Register(read=lambda _: 0),
         "IB": Register(read=lambda _: 0, indices=tuple(range(1, 11))),
         "TS": Register(read=lambda _: _SAMPLING),
@@ -96,7 +96,7 @@ def registers(
 
 
 class _Limits:
-    """PL and CL, which change what the drive does."""
+    """PL and CL, the limits that affect the drive."""
 
     def __init__(self, motor: ElmoMotor) -> None:
         self._motor = motor
@@ -130,7 +130,7 @@ class _Limits:
 
 
 class _Kept:
-    """Parameters that are kept. Those of the encoder are set with the motor off."""
+    """Parameters that are only stored. Those of the encoder can be set only with the motor off."""
 
     def __init__(self, motor: ElmoMotor) -> None:
         self._motor = motor
@@ -172,7 +172,7 @@ class _Kept:
         )
 
     def _speed_bound(self, letters: str, sign: float) -> Register:
-        """HL[2] and LL[2]: beyond, the drive shuts down; [3] are bounds of the position."""
+        """Return HL[2] or LL[2], the speed limits at which the drive switches off. [3] are position limits."""
         motor = self._motor
 
         def read(index: int) -> Number:
@@ -264,7 +264,7 @@ def _stop(motor: ElmoMotor) -> int:
 
 
 def _analog(motor: ElmoMotor, index: int) -> float:
-    """Inputs 1 and 2 [V]; currents of the phases, of which two carry it [A]; the supply [V]."""
+    """Return inputs 1 and 2 [V], the currents of two phases [A] or the supply voltage [V]."""
     share = {3: 1.0, 4: -1.0, 5: 0.0}
     if index == 6:
         return motor.settings.supply

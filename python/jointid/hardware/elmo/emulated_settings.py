@@ -11,44 +11,44 @@ from jointid.hardware.elmo.torque_source import SensorScaling
 class ElmoSettings:
     """Properties and settings of an emulated drive.
 
-    What a drive keeps through a reset is a worst case here: nothing is armed until somebody arms it.
+    The settings after a reset are a worst case: no watchdog is armed.
 
     Attributes
     ----------
     node : int
     counts_per_turn : int
-        Encoder counts of a motor turn.
+        Encoder counts per motor revolution.
     gear_ratio, torque_constant : float
-        Motor's angle per output angle; [N·m/A].
+        Motor angle per joint angle; torque constant [N·m/A].
     peak_current, continuous_current : float
         PL[1], CL[1] [A].
     rated_current : float, optional
-        6075h, by which 6077h is scaled [A]. Default: CL[1].
+        Current that scales 6077h [A]; object 6075h. Default: CL[1].
     speed_limit : float
-        HL[2], and LL[2] with the other sign: motor counts a second; beyond, it shuts down.
+        HL[2], and LL[2] with the other sign [motor counts/s]. Above it the drive switches off.
     idle_loop, idle_jitter : float
-        Time between two interpreter commands, and how much more it may be each time [s].
+        Time between two interpreter commands, and its largest random addition [s].
     enable_time : float
-        From MO=1 until the motor is on and says so: brake, commutation [s].
+        Time from MO=1 until the motor reports that it is on [s], for brake release and commutation.
     mantissa_bits : int
         Significant bits of the current command: 24 for a float, 4 for the thesis's link.
     position_offset : float
-        Output angle at count 0 [rad].
+        Joint angle at count 0 [rad].
     analog : SensorScaling
-        Between the torque sensor's reading and the voltage at the analog input.
+        Relation between the torque sensor's reading and the voltage at the analog input.
     cob_command, cob_reply : int, optional
         COB-IDs of interpreter commands and replies. Default: 0x300 and 0x280 plus the node.
     brake : float
-        Torque at the output of a brake that closes when the motor is off [N·m]; 0: none, and a load falls.
+        Torque at the joint of a brake that closes when the motor is off [N·m]; 0: no brake, and a load falls.
     serial : int
-        1018h:4.
+        Serial number, 1018h:4.
     abort_option, error_behaviour, emergency_events : int
-        6007h, 1029h:1 and 2F21h after a reset of the communication. Default 0: a lost heartbeat stops no
-        motor, the drive leaves the state operational, and no emergency is sent.
+        6007h, 1029h:1 and 2F21h after a reset of the communication. Default 0: a lost heartbeat does not stop
+        the motor, the drive leaves the state operational, and it sends no emergency.
     modulo : tuple of int
-        XM[1], XM[2]: between these the counts wrap; two equal ones: at 32 bits.
+        XM[1], XM[2]: range in which the counts wrap. Equal values: they wrap at 32 bits.
     supply, temperature : float
-        [V], [°C].
+        Supply voltage [V], temperature [°C].
     """
 
     node: int = 127

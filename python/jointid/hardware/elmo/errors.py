@@ -1,10 +1,10 @@
-"""What an Elmo SimplIQ drive means by its numbers: error codes, status, failures, emergencies."""
+"""Meaning of an Elmo SimplIQ drive's numbers: error codes, status, failures, emergencies."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-# EC: why a command was refused (SimplIQ Command Reference, EC).
+# EC: reason for a refused command (SimplIQ Command Reference, EC).
 ERROR_CODES = {
     2: "bad command",
     3: "bad index",
@@ -47,7 +47,7 @@ ERROR_CODES = {
     168: "too fast to start the motor",
 }
 
-# MF: why the motor was shut down. Bits 12 to 15 are one field.
+# MF: reason for a motor shutdown. Bits 12 to 15 are one field.
 _FAILURES = {
     0x1: "resolver or analog Hall sensor",
     0x4: "feedback lost",
@@ -107,7 +107,7 @@ UNIT_MODES = {1: "torque", 2: "speed", 3: "micro-stepper", 4: "dual-loop positio
 
 
 def error_meaning(code: int) -> str:
-    """What an EC number means."""
+    """Return the meaning of an EC number."""
     return ERROR_CODES.get(code, "not listed")
 
 
@@ -124,7 +124,7 @@ def failure_meaning(failure: int) -> str:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DriveStatus:
-    """The SR register, taken apart.
+    """The status register SR, decoded.
 
     Attributes
     ----------
@@ -135,7 +135,7 @@ class DriveStatus:
         The motor was shut down: read MF.
     unit_mode : int
     current_limited : bool
-        Down to the continuous limit.
+        The current is limited to the continuous limit.
     """
 
     problem: str
@@ -146,7 +146,7 @@ class DriveStatus:
 
     @classmethod
     def of(cls, register: int) -> DriveStatus:
-        """Of SR's value."""
+        """Decode the value of SR."""
         problems = {
             1: "under-voltage",
             2: "over-voltage",
@@ -174,7 +174,7 @@ class Emergency:
     register : int
         Error register 1001h.
     elmo_code : int
-        EC, where an object failed.
+        EC, if an object failed.
     meaning : str
     """
 
@@ -185,7 +185,7 @@ class Emergency:
 
     @classmethod
     def of(cls, payload: bytes) -> Emergency | None:
-        """Of a message's bytes; None when they are too few to be one."""
+        """Decode the bytes of a message. Return None if there are too few."""
         if len(payload) < 4:
             return None
         code = int.from_bytes(payload[:2], "little")

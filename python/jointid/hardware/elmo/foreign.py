@@ -1,4 +1,4 @@
-"""Frames of another master: by them somebody else commands our drive, or feeds its watchdog."""
+"""Detect frames of another master, which commands our drive or feeds its watchdog."""
 
 from __future__ import annotations
 
@@ -13,11 +13,9 @@ from jointid.hardware.can import canopen_frames as canopen
 from jointid.hardware.elmo.codec import Command
 from jointid.hardware.elmo.options import ElmoOptions
 
-_RETURN = (
-    2.0  # [s] in which an interface gives a frame of our own back, also to a host that stood still
-)
-_MOST_SENT = 4096  # frames of our own that are remembered
-_MOST_KEPT = 20  # foreign frames for the recording's metadata
+_RETURN = 2.0  # [s] in which an interface returns our own frame, also on a host that paused
+_MOST_SENT = 4096  # own frames that are stored
+_MOST_KEPT = 20  # foreign frames in the recording's metadata
 _NETWORK = {
     canopen.START: "start",
     canopen.STOP: "stop",
@@ -28,17 +26,17 @@ _NETWORK = {
 
 
 class ForeignWatch:
-    """Tells our own frames, which some interfaces give back, from another master's.
+    """Distinguish our own frames, which some interfaces return, from frames of another master.
 
-    Where it is not known whether the interface gives them back, it is seen from the first frame that is
-    sent on a bus on which nobody else commands the drive; should most of them then stay away, it was a
-    foreign frame.
+    If it is unknown whether the interface returns own frames, the first frame sent on a free bus decides. If
+    most later frames do not come back, that first frame was a foreign one.
 
     Parameters
     ----------
     options : ElmoOptions
     gives_back : bool, optional
-        Whether the interface does, see `gives_back`; False: each such frame is foreign. Default: not known.
+        Whether the interface returns own frames, see `gives_back`. False: every such frame is foreign.
+        Default: unknown.
 
     Attributes
     ----------
@@ -48,36 +46,36 @@ class ForeignWatch:
 
     def __init__(self, options: ElmoOptions, gives_back: bool | None = None) -> None:
         self._options = options
-        self._known = False if gives_back is False else None  # one that should may fail to
+        self._known = False if gives_back is False else None  # True may be wrong
         self._commanding = frozenset(options.commanding)
         self._sent: deque[tuple[float, int, bytes]] = deque(maxlen=_MOST_SENT)
         self._given_back: bool | None = self._known
-        self._balance = 0  # frames that came back, less those that did not
+        self._balance = 0  # returned own frames minus those not returned
         self.frames: list[str] = []
 
     def begin(self) -> None:
-        """Nothing of ours is on its way, and it may not be known yet whether it comes back."""
+        """Start again: none of our frames is on the bus. It may be unknown whether they come back."""
         self._sent.clear()
         self._given_back, self._balance = self._known, 0
         self.frames = []
 
     def decide(self) -> None:
-        """A frame has been sent and answered: if it has not come back, none will."""
+        """Decide after a frame was sent and answered: if it has not come back, no frame will."""
         if self._given_back is None:
             self._given_back = False
             self._sent.clear()
 
     def sent(self, when: float, identifier: int, payload: bytes) -> None:
-        """A frame of ours [s]."""
+        """Note a frame that we sent [s]."""
         if self._given_back is not False:
             self._sent.append((when, identifier, payload))
 
     def concerns(self, identifier: int) -> bool:
-        """Whether only a master of this drive sends such frames."""
+        """Return whether only a master of this drive sends such frames."""
         return identifier in self._commanding
 
     def is_own(self, when: float, identifier: int, payload: bytes) -> bool:
-        """Whether a frame is one of ours that comes back; each one comes back once."""
+        """Return whether a frame is our own, returned by the interface. Each frame comes back once."""
         while self._sent and self._sent[0][0] < when - _RETURN:
             self._sent.popleft()
             self._balance -= 1
@@ -93,7 +91,7 @@ class ForeignWatch:
         return False
 
     def meaning(self, when: float, identifier: int, payload: bytes) -> str:
-        """Return what a foreign frame does to our drive, and keep it; empty when it is for other nodes."""
+        """Return the effect of a foreign frame on our drive and store it; empty when it is for other nodes."""
         node, master = self._options.node, self._options.master_node
         if identifier == canopen.NMT and (len(payload) != 2 or payload[1] not in (0, node)):
             return ""
@@ -127,10 +125,10 @@ class ForeignWatch:
 
 
 def gives_back(bus: can.BusABC) -> bool | None:
-    """Return whether a bus gives its own frames back, where that is a matter of its settings; None: not known.
+    """Return whether a bus returns its own frames, if its settings show it; None: unknown.
 
-    Known for python-can's SocketCAN and virtual buses and for the emulated one. With SocketCAN a message's
-    `is_rx` does not tell: it is False for the frames of all programs on this host.
+    Known for python-can's SocketCAN and virtual buses and for the emulated bus. With SocketCAN a message's
+    `is_rx` does not show it: it is False for the frames of all programs on this host.
     """
     told = getattr(bus, "receive_own_messages", None)
     if isinstance(told, bool):
@@ -139,6 +137,6 @@ def gives_back(bus: can.BusABC) -> bool | None:
         return None
     try:
         option = bus.socket.getsockopt(socket.SOL_CAN_RAW, socket.CAN_RAW_RECV_OWN_MSGS)  # type: ignore[attr-defined]
-    except (AttributeError, OSError):  # a system without SocketCAN, or a bus of a like name
+    except (AttributeError, OSError):  # a system without SocketCAN, or another bus of the same name
         return None
     return bool(option)

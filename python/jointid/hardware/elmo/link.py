@@ -1,4 +1,4 @@
-"""Frames to and from one Elmo drive: answers sorted, the first sign of a fault kept."""
+"""Exchange frames with one Elmo drive: sort its answers, keep the first fault."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from jointid.hardware.elmo.timing import SyncWatch
 from jointid.hardware.session.clock import Clock, MonotonicClock
 from jointid.hardware.session.drive import DriveFaultError
 
-_ANSWER = 0.2  # [s] to wait for one
+_ANSWER = 0.2  # [s] to wait for an answer
 HOST_HEARTBEAT = 0x8130
-"""Code of the emergency: ours has stayed away."""
+"""Code of the emergency for a missing host heartbeat."""
 _MOST_WAITING = 10_000  # frames; a bus that brings more at once is not read to its end
 Tap = Callable[[float, int, bytes, bool], None]  # time, identifier, payload, whether sent
-Meanwhile = Callable[[], float]  # something to be done while waiting; returns when next [s]
+Meanwhile = Callable[[], float]  # something to do while waiting; returns when to call it next [s]
 
 
 class ElmoLink:
-    """Frames to and from one drive.
+    """Exchange frames with one drive.
 
     Parameters
     ----------
     bus : can.BusABC
     options : ElmoOptions
     seen : ElmoDecoder
-        Reads the cyclic frames.
+        Decodes the cyclic frames.
     clock : Clock, optional
         Default: the bus's own if it has one, else a `MonotonicClock`.
     """
@@ -56,9 +56,9 @@ class ElmoLink:
         self.clock: Clock = own if clock is None else clock
         self.tap: Tap | None = None
         self.alone = LoneNode(options.node)
-        self.up = False  # from then on a boot-up message or another state is a fault
-        self.heard = 0.0  # [s], when the drive's heartbeat came last
-        # SocketCAN's frames bear the time at which the kernel got them.
+        self.up = False  # when True, a boot-up message or another state is a fault
+        self.heard = 0.0  # [s], time of the drive's last heartbeat
+        # SocketCAN stamps a frame when the kernel receives it.
         self._virtual = clock is None and own is bus
         self.stamped = self._virtual or "socketcan" in type(bus).__module__.split(".")
         self.watch = SyncWatch(options.bitrate, stamped=self.stamped)
@@ -72,12 +72,12 @@ class ElmoLink:
     # Towards the drive.
 
     def send(self, identifier: int, payload: bytes) -> float:
-        """Send a frame; returns when it was sent [s].
+        """Send a frame. Return the send time [s].
 
         Raises
         ------
         DriveFaultError
-            The bus does not take it.
+            The bus does not accept it.
         """
         message = can.Message(arbitration_id=identifier, data=payload, is_extended_id=False)
         begun = self.clock.now()
@@ -86,10 +86,10 @@ class ElmoLink:
             self.alone.asked()
         try:
             self._bus.send(message, timeout=0.01)
-        except (can.CanError, OSError) as error:  # some interfaces let the system's errors through
+        except (can.CanError, OSError) as error:  # OSError from some interfaces
             raise DriveFaultError("bus", f"a frame could not be sent: {error}") from error
-        when = self.clock.now()  # behind the sending, which may have had to wait for the processor
-        if not self.stamped:  # nor does the answer tell how long we waited behind it
+        when = self.clock.now()  # after the sending, which may have waited for the processor
+        if not self.stamped:  # without stamps the answer does not show how long we waited
             when = 0.5 * (begun + when)
         if identifier != canopen.SYNC:
             self.watch.own(when, len(payload))
@@ -98,14 +98,14 @@ class ElmoLink:
         return when
 
     def command(self, command: Command) -> None:
-        """Send a command and wait for nothing."""
+        """Send a command without waiting for its reply."""
         self._replies.pop(command.key, None)
         self.send(self._command_id, command.payload())
 
     def ask(
         self, command: Command, timeout: float = _ANSWER, *, meanwhile: Meanwhile | None = None
     ) -> Reply:
-        """Send a command and wait for its reply; one of a kind at a time."""
+        """Send a command and wait for its reply. Only one command of a kind at a time."""
         self.command(command)
         self.wait(
             lambda: command.key in self._replies,
@@ -119,7 +119,7 @@ class ElmoLink:
         return reply
 
     def number(self, letters: str, timeout: float = _ANSWER, index: int = 0) -> int | float | None:
-        """The value of a register, even when the drive reports a fault; None without an answer."""
+        """Return the value of a register, even when the drive reports a fault; None without an answer."""
         command = Command(letters=letters, index=index)
         self._replies.pop(command.key, None)
         sent = (self._command_id, command.payload())
@@ -129,7 +129,7 @@ class ElmoLink:
         return reply.value if isinstance(reply, Reply) else None
 
     def object_value(self, request: canopen.SdoRequest, timeout: float) -> int | None:
-        """The value of an object, even when the drive reports a fault; None without one."""
+        """Return the value of an object, even when the drive reports a fault; None without an answer."""
         self._answers.clear()
         found: list[int] = []
 
@@ -147,7 +147,7 @@ class ElmoLink:
     def _tried(
         self, identifier: int, payload: bytes, done: Callable[[], bool], timeout: float
     ) -> bool:
-        """Send a question and wait for its answer, whatever fails; whether it came."""
+        """Send a question and wait for its answer despite errors. Return whether the answer arrived."""
         end = self.clock.now() + timeout
         try:
             self.send(identifier, payload)
@@ -157,7 +157,7 @@ class ElmoLink:
                     return False
                 self.receive(left)
         except Exception:
-            self.clock.sleep_until(end)  # the bus may come back
+            self.clock.sleep_until(end)  # the bus may recover
             return False
         return True
 
@@ -167,7 +167,7 @@ class ElmoLink:
         Raises
         ------
         SdoAbortError
-            The drive refuses.
+            The drive refuses the access.
         DriveFaultError
         """
         self._answers.clear()
@@ -190,9 +190,9 @@ class ElmoLink:
         Raises
         ------
         SdoAbortError
-            The drive refuses.
+            The drive refuses the access.
         InputError
-            Its answer cannot be read.
+            The answer cannot be read.
         DriveFaultError
         """
 
@@ -216,9 +216,9 @@ class ElmoLink:
         *,
         meanwhile: Meanwhile | None = None,
     ) -> None:
-        """Receive until a condition holds, or a fault is known.
+        """Receive until a condition holds or a fault is known.
 
-        What had arrived before the time was over counts, also when this program looks late.
+        Frames that arrived in time count, even if this program reads them later.
 
         Raises
         ------
@@ -240,19 +240,19 @@ class ElmoLink:
             self.raise_fault()
 
     def drain(self, timeout: float) -> None:
-        """Read what comes in a while."""
+        """Read the frames that arrive within a time."""
         end = self.clock.now() + timeout
         for _ in range(_MOST_WAITING):
             if not self.receive(max(0.0, end - self.clock.now())):
                 break
 
     def listen(self, duration: float) -> None:
-        """Hear for a while whether somebody else is the drive's master; nothing is sent.
+        """Listen for another master of the drive, without sending.
 
         Raises
         ------
         DriveFaultError
-            "foreign_master", as soon as one is heard.
+            "foreign_master", as soon as a frame of another master arrives.
         """
         self.foreign.begin()
         end = self.clock.now() + duration
@@ -266,7 +266,7 @@ class ElmoLink:
             self.raise_fault()
 
     def read_waiting(self) -> None:
-        """Read what has come, e.g. while the host stood still.
+        """Read the frames that have arrived, e.g. while the host paused.
 
         Raises
         ------
@@ -278,18 +278,18 @@ class ElmoLink:
         self.raise_fault()
 
     def forget_fault(self, but: str = "") -> None:
-        """Drop a known or earlier fault; one of the kind `but` is kept."""
+        """Drop a stored fault, unless it is of the kind `but`."""
         if self._fault is not None and self._fault.kind != but:
             self._fault = None
 
     def raise_fault(self) -> None:
-        """Raise the first known fault, once."""
+        """Raise the first stored fault, once."""
         if self._fault is not None:
             fault, self._fault = self._fault, None
             raise fault
 
     def receive(self, timeout: float) -> bool:
-        """Read a frame; whether there was one."""
+        """Read a frame. Return whether there was one."""
         try:
             message = self._bus.recv(timeout)
         except (can.CanError, OSError) as error:
@@ -302,7 +302,7 @@ class ElmoLink:
                 self._note("bus", f"an error frame of the CAN controller: {meaning}")
             return True
         if message.is_extended_id or message.is_remote_frame or message.is_fd:
-            return True  # none of the drive's
+            return True  # not a frame of the drive
         payload, when = bytes(message.data), self._arrival(message)
         if self.foreign.concerns(message.arbitration_id):
             self._take_foreign(when, message.arbitration_id, payload)
@@ -315,11 +315,11 @@ class ElmoLink:
         return True
 
     def _arrival(self, message: can.Message) -> float:
-        """When a frame came [s], on our clock: by the bus's own stamp where its clock is the same."""
+        """Return the arrival time of a frame [s] on our clock, from the bus's stamp if the bus uses the same clock."""
         if self._virtual:
             return message.timestamp
         now = self.clock.now()
-        if self.stamped:  # the kernel's, of its wall clock; the frame may have waited for us since
+        if self.stamped:  # the kernel's stamp, from the wall clock; the frame may have waited since
             return now - min(1.0, max(0.0, time.time() - message.timestamp))
         return now
 
@@ -338,7 +338,7 @@ class ElmoLink:
             self._take_heartbeat(payload[0])
 
     def _take_foreign(self, when: float, identifier: int, payload: bytes) -> None:
-        """A frame that only a master sends: ours that comes back, or another one's."""
+        """Handle a frame that only a master sends: our own, returned, or one of another master."""
         if self.foreign.is_own(self.clock.now(), identifier, payload):
             return
         meaning = self.foreign.meaning(when, identifier, payload)
@@ -387,11 +387,11 @@ class ElmoLink:
             self._note("drive_fault", f"the drive has left the state operational: it is {name}")
 
     def _note_second(self, meaning: str) -> None:
-        """While the drive is brought up."""
+        """Note a second node that answers, while the drive is being connected."""
         if meaning and not self.up:
             self._note("drive_fault", meaning)
 
     def _note(self, kind: str, message: str) -> None:
-        """Keep the first fault: what follows is often its consequence."""
+        """Store the first fault, because later ones are often its consequence."""
         if self._fault is None:
             self._fault = DriveFaultError(kind, message)

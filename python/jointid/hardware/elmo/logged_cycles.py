@@ -1,4 +1,4 @@
-"""The cycles of a session out of its frames: what was sampled, and the current commanded."""
+"""Reconstruct a session's cycles from its frames: the samples and the commanded currents."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from jointid.joint.joint import Joint
 
 
 class CycleReader:
-    """Reads frames in the order in which a session sent and received them.
+    """Read frames in the order in which a session sent and received them.
 
-    A cycle ends with our heartbeat, which goes out with each command, and before the first cycle alone.
+    A cycle ends with our heartbeat, which follows each command. Before the first cycle heartbeats come alone.
 
     Parameters
     ----------
     joint : Joint
     options : ElmoOptions
     stamped : bool
-        The position's time of arrival is exact and gives the time of the sample; else the SYNC's is taken.
+        Whether the position frame's arrival time is exact and gives the sample time. Otherwise the SYNC gives it.
     rated_current : float
-        The drive's CL[1] [A], where the frames do not have it; not a number: not known.
+        The drive's CL[1] [A], used if the frames do not contain it; NaN: unknown.
     """
 
     def __init__(
@@ -56,7 +56,7 @@ class CycleReader:
             Frames are missing.
         """
         for when, identifier, payload, extended, fd, _ in frames:
-            if extended or fd:  # another node's: CANopen's are classic frames of 11 bits
+            if extended or fd:  # not CANopen: from another node
                 continue
             if identifier == canopen.SYNC:
                 self._begin(when)
@@ -77,12 +77,12 @@ class CycleReader:
         self._last()
 
     def _begin(self, when: float) -> None:
-        self._last()  # the sample that ended a run, behind which the joint was braked
-        if self._open and self.cycles:  # in a run no SYNC is without a command
+        self._last()  # the sample that ended a run, after which the joint was braked
+        if self._open and self.cycles:  # in a run every SYNC has a command
             what = "command" if self._commanded is None else "host's heartbeat"
             raise InputError(self._missing(what, when))
         if not self._seen.complete:
-            self._seen.forget()  # the session has given up the last answer, too
+            self._seen.forget()  # the session has dropped the last answer, too
         self._seen.begin()
         self._synced, self._commanded = when, None
         self._open = True
@@ -92,7 +92,7 @@ class CycleReader:
         try:
             command = Command.of(payload)
         except InputError:
-            return  # another program's
+            return  # a command of another program
         if command.letters == "TC" and command.value is not None:
             self._commanded = float(command.value)
 
@@ -100,7 +100,7 @@ class CycleReader:
         try:
             reply = Reply.of(payload)
         except (DriveError, InputError):
-            return  # the session's own recording has what it meant
+            return  # the session's own recording holds the intended command
         if reply.letters == "AN":
             self._seen.take_voltage(float(reply.value))
         elif reply.key == ("CL", 1):
@@ -108,14 +108,14 @@ class CycleReader:
 
     def _end(self, when: float) -> None:
         if not self.cycles and (not self._open or self._commanded is None):
-            self._open = False  # the motor is being switched on: our heartbeat has begun
+            self._open = False  # the motor is being switched on: our heartbeat has started
             return
         if self._commanded is None:
             raise InputError(self._missing("command" if self._open else "", when))
         torque, self._commanded = self._per_ampere * self._commanded, None
         if self._open and self._seen.complete:
             self._keep(when, torque)
-        else:  # the session held its torque; or the log lacks a frame: only its recording can tell
+        else:  # the session held its torque, or a frame is missing: only its recording shows which
             what = f"{self._seen.lacking} that answers" if self._open else ""
             lost = self._missing(what, when)
             self.cycles.append(
@@ -124,7 +124,7 @@ class CycleReader:
         self._open = False
 
     def _last(self) -> None:
-        """A sample without a command is the one that ended the run."""
+        """Store the sample that ended the run. It has no command."""
         if self._open and self.cycles and self._seen.complete and self._commanded in (None, 0.0):
             self._keep(self._watch.sampled, self.cycles[-1].torque)
             self._open = False

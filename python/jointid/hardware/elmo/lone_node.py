@@ -1,10 +1,10 @@
-"""Whether a node number is one drive's: two with the same answer every question twice."""
+"""Check that only one drive has a node number: two drives answer every question twice."""
 
 from __future__ import annotations
 
 
 class LoneNode:
-    """Counts a node's boot-up messages and answers, from the reset of its communication.
+    """Count a node's boot-up messages and answers after the reset of its communication.
 
     Parameters
     ----------
@@ -13,7 +13,7 @@ class LoneNode:
     Attributes
     ----------
     booted : bool
-        Its boot-up message has come.
+        Whether the boot-up message has arrived.
     """
 
     def __init__(self, node: int) -> None:
@@ -21,20 +21,20 @@ class LoneNode:
         self.begin()
 
     def begin(self) -> None:
-        """Its communication is reset next, and no question is open."""
+        """Start: the communication is reset next, and no question is open."""
         self.booted, self._open = False, 0
 
     def asked(self) -> None:
-        """It is asked for an object."""
+        """Note a question for an object."""
         self._open += 1
 
     def answered(self) -> str:
-        """Return what an answer tells; empty when it answers a question."""
+        """Return the problem that an answer shows; empty when it answers a question."""
         self._open -= 1
         return self._two("an object was answered twice") if self._open < 0 else ""
 
     def boots(self) -> str:
-        """Return what a boot-up message tells; empty when it is the first."""
+        """Return the problem that a boot-up message shows; empty when it is the first."""
         again, self.booted = self.booted, True
         return self._two("the boot-up message came twice") if again else ""
 

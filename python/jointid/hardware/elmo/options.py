@@ -1,4 +1,4 @@
-"""How an Elmo drive is wired and addressed."""
+"""Wiring and addresses of an Elmo drive."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jointid.joint.joint import Joint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ElmoOptions:
-    """How a drive is wired and addressed.
+    """Wiring and addresses of a drive.
 
     Attributes
     ----------
@@ -23,31 +23,31 @@ class ElmoOptions:
     counts_per_turn : int
         Encoder counts per motor revolution.
     position_offset : float
-        Output angle at encoder count 0 [rad].
+        Joint angle at encoder count 0 [rad].
     cob_command, cob_reply, cob_position : int, optional
-        COB-IDs of interpreter commands, replies and the position's PDO. Default: 0x300, 0x280 and 0x480,
-        plus the node.
+        COB-IDs of interpreter commands, of replies and of the position's PDO. Default: 0x300, 0x280 and
+        0x480, plus the node.
     master : int, optional
         The session's own node, 1 to 127; the drive watches its heartbeat. No other device on the bus may
         use it. Default: 1, or 2 if the drive is node 1.
     listen : float
         Time to listen for another master before the first frame is sent [s].
     heartbeat : float
-        Time without the session's heartbeat after which the drive stops, and without the drive's after which
-        the session stops [s].
+        The drive stops after this time without the session's heartbeat. The session stops after this time
+        without the drive's heartbeat [s].
     drive_heartbeat : float
         Time between two heartbeats of the drive [s]; at most half of `heartbeat`.
     acknowledge : bool
-        Start although the drive keeps an old failure; enabling clears it.
+        Start even if the drive still reports an earlier failure. Enabling clears it.
     torque : SyncedConverter, AnalogInput or None
-        Where the joint's torque sensor is read.
+        Source of the joint's torque sensor signal.
     bitrate : float
-        Bit rate of the bus [bit/s], to estimate its load.
+        Bit rate of the bus [bit/s], used to estimate its load.
     execution_delay : float
         Delay from a command's arrival until the drive's idle loop acts on it [s].
     mantissa_bits : int
-        Bits of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Commands are
-        rounded to it.
+        Bits of a current command that the drive keeps: 24 for a float, 4 over the thesis's link. Commands are
+        rounded to them.
     """
 
     node: int = 127
@@ -135,7 +135,7 @@ class ElmoOptions:
 
     @property
     def watchdog(self) -> Watchdog:
-        """What the drive does without our heartbeat: `connect` reads it back, and refuses a drive that differs."""
+        """Reaction of the drive to a missing heartbeat. `connect` reads it back, and refuses a drive that differs."""
         return Watchdog(time=self.heartbeat, fed_by="heartbeat", then="off", read_back=True)
 
     @property
@@ -155,14 +155,14 @@ class ElmoOptions:
 
     @property
     def master_node(self) -> int:
-        """Our node: the given one, else the first that is not the drive's."""
+        """Our node: `master`, or by default the first that is not the drive's."""
         if self.master is not None:
             return self.master
         return 2 if self.node == 1 else 1
 
     @property
     def answering(self) -> tuple[int, ...]:
-        """COB-IDs of what the drive and the sensor send: replies, position, emergency, boot-up, SDO, sensor."""
+        """COB-IDs that the drive and the sensor send: replies, position, emergency, boot-up, SDO, sensor."""
         found = [
             self.reply_id,
             self.position_id,
@@ -188,14 +188,14 @@ class ElmoOptions:
         return tuple(sorted({*self.answering, *self.commanding}))
 
     def resolution(self, joint: Joint) -> float:
-        """Output angle of an encoder count [rad]."""
+        """Return the joint angle per encoder count [rad]."""
         return 2.0 * math.pi / abs(self.counts_per_turn * joint.gear_ratio)
 
     def per_count(self, joint: Joint) -> float:
-        """Output angle of an encoder count, with its sign [rad]."""
+        """Return the joint angle per encoder count, with its sign [rad]."""
         return 2.0 * math.pi / (self.counts_per_turn * joint.gear_ratio)
 
     def angle(self, counts: int, joint: Joint) -> float:
-        """Output angle of encoder counts [rad]."""
+        """Return the joint angle of encoder counts [rad]."""
         per_turn = self.counts_per_turn * joint.gear_ratio
         return counts * (2.0 * math.pi / per_turn) + self.position_offset

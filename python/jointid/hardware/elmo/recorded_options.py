@@ -1,4 +1,4 @@
-"""An Elmo drive's options in a recording's metadata, and back."""
+"""Convert an Elmo drive's options to a recording's metadata and back."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _SOURCES = (AnalogInput.__name__, SyncedConverter.__name__)
 
 
 def elmo_options_document(options: ElmoOptions) -> dict[str, Any]:
-    """Return the options as JSON's types; the torque sensor's kind is its "source"."""
+    """Return the options as JSON types. The key "source" holds the kind of the torque sensor."""
     document: dict[str, Any] = plain(options)
     if options.torque is not None:
         document["torque"] = {"source": type(options.torque).__name__, **document["torque"]}
@@ -22,12 +22,12 @@ def elmo_options_document(options: ElmoOptions) -> dict[str, Any]:
 
 
 def elmo_options_of(metadata: Mapping[str, Any]) -> ElmoOptions:
-    """Return the options that a recording's `drive_options` hold; the default ones where there are none.
+    """Return the options in a recording's `drive_options`, or the default options.
 
     Raises
     ------
     InputError
-        They are those of another drive, or of a later version.
+        They are options of another drive or of a later version.
     """
     recorded = metadata.get("drive_options")
     if recorded is None:

@@ -1,4 +1,4 @@
-"""What an Elmo drive is and how it is set: identity and limits, read and never changed."""
+"""Read an Elmo drive's identity and limits, without changes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.hardware.elmo.link import ElmoLink
 from jointid.hardware.session.drive import DriveFaultError
 from jointid.hardware.session.drive_report import Reported
 
-_ANSWER = 0.05  # [s] for a register; a drive that does not have one refuses it at once
+_ANSWER = 0.05  # [s] to wait for a register; a drive without the register refuses at once
 
 # Letters, index, meaning, unit (SimplIQ Command Reference).
 _LIMITS = (
@@ -36,7 +36,7 @@ _SUPPLY, _TEMPERATURE = ("AN", 6), ("TI", 1)
 
 
 def identity(link: ElmoLink) -> tuple[Reported, ...]:
-    """Return vendor, product, revision and serial number (1018h), name and firmware; what it has not is left out."""
+    """Return vendor, product, revision and serial number (1018h), name and firmware, without those that are missing."""
     found = []
     for subindex, meaning in ((1, "vendor"), (2, "product"), (3, "revision"), (4, "serial")):
         value = read_object(link, 0x1018, subindex)
@@ -51,13 +51,13 @@ def identity(link: ElmoLink) -> tuple[Reported, ...]:
 
 
 def limits(link: ElmoLink, resolution: float) -> tuple[Reported, ...]:
-    """Return the drive's own limits, by its registers, and rated current and torque (6075h, 6076h).
+    """Return the drive's limits from its registers, and rated current and torque (6075h, 6076h).
 
     Parameters
     ----------
     link : ElmoLink
     resolution : float
-        Output angle of an encoder count [rad].
+        Joint angle per encoder count [rad].
     """
     found = []
     for letters, index, meaning, unit in _LIMITS:
@@ -90,12 +90,12 @@ def limits(link: ElmoLink, resolution: float) -> tuple[Reported, ...]:
 
 
 def counts_per_turn(link: ElmoLink) -> float | None:
-    """Return the counts of a motor turn that the drive is set to; None without an answer."""
+    """Return the drive's counts per motor revolution; None without an answer."""
     return link.number(_COUNTS[0], _ANSWER, _COUNTS[1])
 
 
 def supply(link: ElmoLink) -> float | None:
-    """Return the voltage of the supply [V]; None without an answer."""
+    """Return the supply voltage [V]; None without an answer."""
     return link.number(_SUPPLY[0], _ANSWER, _SUPPLY[1])
 
 

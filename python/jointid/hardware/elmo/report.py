@@ -1,4 +1,4 @@
-"""An Elmo drive's report: what is connected, how it is set, how it stands."""
+"""Report of an Elmo drive: identity, settings and present state."""
 
 from __future__ import annotations
 
@@ -32,9 +32,9 @@ def elmo_report(
     identity, settings : sequence of Reported
         Read when the drive was connected.
     sample : DriveSample
-        Just now.
+        Sample read just before.
     velocity : float
-        At the output [rad/s].
+        Joint velocity [rad/s].
     """
     register = link.number("SR")
     status = None if register is None else DriveStatus.of(int(register))
@@ -65,7 +65,7 @@ def _mode(unit_mode: int) -> Reported:
 
 
 def _counts(link: ElmoLink, options: ElmoOptions) -> Reported:
-    """The encoder's counts a turn, as the drive has them; wrong ones in the joint file are a wrong gear ratio."""
+    """Return the drive's encoder counts per revolution. A wrong value in the joint file acts as a wrong gear ratio."""
     value = registers.counts_per_turn(link)
     return Reported(
         name="CA[18]",

@@ -1,4 +1,4 @@
-"""Objects of an Elmo drive that a session sets: position at each SYNC, heartbeats both ways."""
+"""Objects of an Elmo drive that a session sets: position at each SYNC, heartbeats in both directions."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from jointid.hardware.session.drive_report import Reported
 
 _Write = tuple[int, int, int, int]  # index, subindex, value, size
 _EMERGENCIES = (
-    0x188  # events of 2F21h that a session must hear of: heartbeat, motor failure, command refused
+    0x188  # events of 2F21h that a session needs: heartbeat, motor failure, command refused
 )
 
 
 def map_position(link: ElmoLink, options: ElmoOptions) -> None:
-    """Position and torque in the fourth PDO, at each SYNC: off, mapped, on."""
+    """Map position and torque into the fourth PDO, sent at each SYNC. The PDO is off while it is mapped."""
     cob = options.position_id
     _write(
         link,
@@ -30,7 +30,7 @@ def map_position(link: ElmoLink, options: ElmoOptions) -> None:
 
 
 def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
-    """Let the drive stop by itself when our heartbeat is missing, and send its own.
+    """Set the drive to stop when our heartbeat is missing, and to send its own heartbeat.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def arm_watchdogs(link: ElmoLink, options: ElmoOptions) -> None:
 
 
 def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ...]:
-    """Return what makes the drive stop by itself, read from it, with what a session needs."""
+    """Return the settings that stop the drive without our heartbeat, read back, with the needed values."""
     watched = options.master_node << 16 | round(1e3 * options.heartbeat)
     emergencies = _object(link, 0x2F21, 0)
     return (
@@ -93,12 +93,12 @@ def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ..
 
 
 def disarm_watchdogs(link: ElmoLink) -> None:
-    """From now on no heartbeat is sent, which is no failure."""
+    """Switch off the heartbeat supervision: from now on we send no heartbeat, and this is no failure."""
     _write(link, (0x1016, 1, 0, 4), (0x1017, 0, 0, 2))
 
 
 def _object(link: ElmoLink, index: int, subindex: int) -> int:
-    """Value of an object; 0 when the drive refuses to give it."""
+    """Return the value of an object; 0 if the drive refuses."""
     try:
         return int(link.transfer(SdoRequest(index=index, subindex=subindex)))
     except SdoAbortError:

@@ -1,4 +1,4 @@
-"""Our heartbeat stopped on purpose: what an Elmo drive's own watchdog does."""
+"""Stop our heartbeat on purpose to test an Elmo drive's own watchdog."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from jointid.hardware.elmo.switching import CYCLES, MotorSwitch
 from jointid.hardware.session.drive import DriveFaultError
 from jointid.hardware.session.silence import DriveSilence
 
-_LISTENED = 2.0  # times the drive's patience
+_LISTENED = 2.0  # multiple of the drive's watchdog time
 _ANSWER = 0.05  # [s] for a register
-_MISSED = "heartbeat lost"  # as `failure_meaning` says it
+_MISSED = "heartbeat lost"  # text of `failure_meaning`
 
 
 def fall_silent(link: ElmoLink, options: ElmoOptions, switch: MotorSwitch) -> DriveSilence:
-    """Send nothing for twice the time of the drive's watchdog, then ask for its state; the motor is on before.
+    """Send nothing for twice the drive's watchdog time, then read its state. The motor must be on.
 
-    Times are those of the frames: of our last heartbeat, and of the drive's emergency.
+    The times come from the frames: our last heartbeat and the drive's emergency.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ def fall_silent(link: ElmoLink, options: ElmoOptions, switch: MotorSwitch) -> Dr
     Raises
     ------
     DriveFaultError
-        The motor is not on at first, or the drive reports something else.
+        The motor is off at the start, or the drive reports another fault.
     """
     beaten: list[float] = []
     told: list[float] = []
@@ -53,7 +53,7 @@ def fall_silent(link: ElmoLink, options: ElmoOptions, switch: MotorSwitch) -> Dr
     register = link.number("SR", CYCLES * options.heartbeat)
     if register is None or not DriveStatus.of(int(register)).motor_on:
         raise DriveFaultError("drive_fault", "the motor is off before the heartbeat was stopped")
-    link.echoes.end()  # of commands: none is sent
+    link.echoes.end()  # no commands are sent from here
     link.tap = watch
     try:
         switch.beat()
@@ -81,7 +81,7 @@ def fall_silent(link: ElmoLink, options: ElmoOptions, switch: MotorSwitch) -> Dr
 
 
 def _raise_others(link: ElmoLink) -> None:
-    """Raise a fault that is not the one awaited."""
+    """Raise a fault other than the expected one."""
     try:
         link.raise_fault()
     except DriveFaultError as fault:

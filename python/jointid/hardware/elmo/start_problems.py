@@ -1,4 +1,4 @@
-"""Reasons of an Elmo drive's own not to switch its motor on."""
+"""Reasons in an Elmo drive not to switch its motor on."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def reasons_not_to_start(
     allowed_torque : float
         The session's limit, at the output [N·m].
     per_ampere : float
-        Torque at the output [N·m/A].
+        Joint torque per current [N·m/A].
     """
     reasons = []
     if not math.isfinite(allowed_torque):

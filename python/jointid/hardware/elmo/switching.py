@@ -1,4 +1,4 @@
-"""An Elmo drive's motor switched on, watched by our heartbeat, and off, by every way there is."""
+"""Switch an Elmo drive's motor on, watched by our heartbeat, and off, by all available commands."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from jointid.hardware.elmo.link import ElmoLink
 from jointid.hardware.elmo.options import ElmoOptions
 from jointid.hardware.session.drive import DriveEnd, DriveFaultError
 
-CYCLES = 1.0 / 3.0  # of the time that the drive waits for a heartbeat: one may be lost
+CYCLES = 1.0 / 3.0  # share of the drive's heartbeat timeout: one heartbeat may be lost
 _ENABLE = 3.0  # [s] to wait for the motor: commutation and brake take their time
-_LOOK = 0.02  # [s] between two questions whether it is on
-_SEEN_OFF = 0.2  # [s] that switching off is tried for, at most
-_SOON = 3  # times that switching off is repeated in the next cycle
+_LOOK = 0.02  # [s] between two queries of the motor state
+_SEEN_OFF = 0.2  # [s], longest time to try to switch off
+_SOON = 3  # number of tries in consecutive cycles
 _NETWORK = 2  # tries after which the network is stopped, too
 _CONTROL, _STATUS = 0x6040, 0x6041  # words of CiA 402
 _SWITCHED_ON, _OPERATION = 0x02, 0x04  # bits of the status word
@@ -39,7 +39,7 @@ class MotorSwitch:
         self._failure = ""
 
     def forget(self) -> None:
-        """The drive is another one, or was used by another program."""
+        """Reset the state for another drive, or after use by another program."""
         self.seen_off, self._failure = False, ""
 
     def beat(self) -> None:
@@ -47,7 +47,7 @@ class MotorSwitch:
         self._beaten = self._link.send(self._heartbeat_id, b"\x05")
 
     def on(self) -> None:
-        """Motor on, at zero torque: our heartbeat begins before, and goes on while the drive takes its time.
+        """Switch the motor on at zero torque. Our heartbeat starts before and continues meanwhile.
 
         Raises
         ------
@@ -65,14 +65,14 @@ class MotorSwitch:
                 raise DriveFaultError("drive_fault", "the motor does not come on (MO=1, SR bit 4)")
             link.clock.sleep_until(link.clock.now() + self._beat_in_time())
         link.ask(ZERO, meanwhile=self._beat_in_time)
-        self.beat()  # the whole time is left until the first cycle
+        self.beat()  # restart the timeout before the first cycle
         link.echoes.begin()
 
     def off(self, period: float) -> DriveEnd:
-        """TC = 0 and MO = 0, again in each cycle [s] until the drive confirms that its motor is off.
+        """Send TC = 0 and MO = 0 in each cycle [s] until the drive confirms that its motor is off.
 
-        Where that is not confirmed, two more ways are gone: the control word 6040h by SDO, then an NMT
-        stop. A drive that is never reached stops by itself, because our heartbeat stays away.
+        Without a confirmation, send the control word 6040h by SDO, then an NMT stop. A drive that cannot be
+        reached stops on its own watchdog, because our heartbeat is missing.
         """
         link = self._link
         link.echoes.end()
@@ -91,7 +91,7 @@ class MotorSwitch:
             if register is None:  # it may have restarted, and ignores commands then
                 self._network(canopen.START)
             tries += 1
-            if tries > _SOON:  # a slow drive is not to be flooded
+            if tries > _SOON:  # do not flood a slow drive
                 pause = min(2.0 * pause, 0.02)
         if not self.seen_off:
             return DriveEnd(state="on")
@@ -100,7 +100,7 @@ class MotorSwitch:
         return DriveEnd(state="off", failure=self._failure)
 
     def _otherwise(self, pause: float, *, last: bool) -> None:
-        """Switch off without the interpreter: "disable voltage" by SDO, at last the network's stop."""
+        """Switch off without the interpreter: send "disable voltage" by SDO and, at the end, an NMT stop."""
         link, request = self._link, 0x600 + self._options.node
         stop = canopen.SdoRequest(index=_CONTROL, subindex=0, value=0, size=2)
         self._try(request, stop.payload())
@@ -109,7 +109,7 @@ class MotorSwitch:
         if last and not self.seen_off:
             self._network(canopen.STOP)
             link.clock.sleep_until(link.clock.now() + pause)
-            self._network(canopen.START)  # only an operational drive can be asked
+            self._network(canopen.START)  # only an operational drive answers
 
     def _status(self) -> DriveStatus:
         register = self._link.ask(Command(letters="SR"), meanwhile=self._beat_in_time).value
@@ -120,7 +120,7 @@ class MotorSwitch:
         return None if value is None else int(value)
 
     def _beat_in_time(self) -> float:
-        """Send our heartbeat if it is due; returns the time until the next [s]."""
+        """Send our heartbeat if it is due. Return the time until the next [s]."""
         every = min(_LOOK, CYCLES * self._options.heartbeat)
         now = self._link.clock.now()
         if now - self._beaten >= every:
@@ -133,5 +133,5 @@ class MotorSwitch:
     def _try(self, identifier: int, payload: bytes) -> None:
         try:
             self._link.send(identifier, payload)
-        except Exception:  # after any error of a bus the next command is tried
-            return  # again in the next round; in the end the drive's own watchdog stops it
+        except Exception:  # try the next command after any error of the bus
+            return  # the next round tries again; finally the drive's own watchdog stops it

@@ -1,4 +1,4 @@
-"""Where a session reads the joint's torque sensor: a converter on the bus, or the drive's analog input."""
+"""Source of the joint's torque sensor signal: a converter on the bus, or the drive's analog input."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from jointid.hardware.bench.table import Table
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SensorScaling:
-    """From the voltage to the raw reading: full_scale · ((V − centre) / span − zero − cosine · cos(q + start)).
+    """Scaling from voltage to raw reading: full_scale · ((V − centre) / span − zero − cosine · cos(q + start)).
 
-    The defaults are the thesis's bench: 3 V centred on 1.5 V, and a zero that moves with the position.
+    The defaults are the thesis's bench: 3 V centred on 1.5 V, and a zero that varies with the position.
 
     Parameters
     ----------
     full_scale : float
-        Reading of a deflection by `span`.
+        Raw reading at a deflection of `span`.
     centre : float
-        Voltage of no deflection [V].
+        Voltage without deflection [V].
     span : float
-        Voltage from there to the full scale [V].
+        Voltage difference between `centre` and full scale [V].
     zero : float
         Offset, as a share of the full scale.
     cosine : float
         Amplitude of the offset that varies with the angle, as a share of the full scale.
     start : float
-        Phase of that offset [rad].
+        Phase of the varying offset [rad].
     """
 
     full_scale: float = 217.34
@@ -48,12 +48,12 @@ class SensorScaling:
                 )
 
     def reading(self, voltage: float, position: float) -> float:
-        """The raw reading."""
+        """Return the raw reading."""
         correction = self.zero + self.cosine * math.cos(position + self.start)
         return self.full_scale * ((voltage - self.centre) / self.span - correction)
 
     def voltage(self, reading: float, position: float) -> float:
-        """The voltage of a raw reading [V]."""
+        """Return the voltage of a raw reading [V]."""
         correction = self.zero + self.cosine * math.cos(position + self.start)
         return self.centre + self.span * (reading / self.full_scale + correction)
 
@@ -71,7 +71,7 @@ class SyncedConverter:
     lowest, highest : float
         Its range [V].
     conversions : int
-        Conversions that one sum holds.
+        Number of conversions in one sum.
     scaling : SensorScaling
     """
 
@@ -102,7 +102,7 @@ class SyncedConverter:
             )
 
     def voltage(self, payload: bytes) -> float:
-        """The mean voltage of a frame [V].
+        """Return the mean voltage of a frame [V].
 
         Raises
         ------
@@ -118,14 +118,14 @@ class SyncedConverter:
         return self.lowest + share * (self.highest - self.lowest)
 
     def clipped(self, voltage: float) -> bool:
-        """Whether it is at the end of its range."""
+        """Return whether a voltage is at the end of the range."""
         step = (self.highest - self.lowest) / (1 << self.bits)
         return not self.lowest + 2.0 * step < voltage < self.highest - 2.0 * step
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AnalogInput:
-    """The drive's own analog input, asked every few cycles.
+    """The drive's own analog input, queried every few cycles.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ class AnalogInput:
     lowest, highest : float
         Range of the input [V].
     every : int
-        Cycles between two questions; a question in each cycle would load bus and drive too much.
+        Cycles between two queries. A query in each cycle would load bus and drive too much.
     scaling : SensorScaling
     """
 
@@ -157,7 +157,7 @@ class AnalogInput:
             )
 
     def clipped(self, voltage: float) -> bool:
-        """Whether it is at the end of its range."""
+        """Return whether a voltage is at the end of the range."""
         margin = 1e-3 * (self.highest - self.lowest)
         return not self.lowest + margin < voltage < self.highest - margin
 
@@ -170,7 +170,7 @@ _SOURCES: dict[str, type | None] = {
 
 
 def read_torque_source(table: Table) -> SyncedConverter | AnalogInput | None:
-    """Return where the torque sensor is read, from the table `[session.torque]`.
+    """Return the source of the torque sensor's signal from the table `[session.torque]`.
 
     Raises
     ------
