@@ -1,1 +1,1 @@
-"""An emulated bus and what emulated drives share: time, devices, faults on demand."""
+"""An emulated bus and the common parts of emulated drives: time, devices, faults on demand."""

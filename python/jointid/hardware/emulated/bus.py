@@ -1,4 +1,4 @@
-"""A CAN bus with a clock of its own: frames take their time on the wire, waiting moves the clock."""
+"""A CAN bus in virtual time: frames take time on the wire, and waiting advances the clock."""
 
 from __future__ import annotations
 
@@ -65,12 +65,12 @@ class EmulatedBus(can.BusABC):
         self._rate = 1.0 + clock_drift
         self._jitter, self._random = jitter, Random(seed)
         self._faults = faults
-        self._time = 0.0  # of the devices and the joint
+        self._time = 0.0  # [s], clock of the devices and the joint
         self._agenda = Agenda()
         self._wire = Wire(self._true_time, self._at, bitrate, faults, data_bitrate)
         self._inbox: deque[can.Message] = deque()
         self.sent = 0
-        self.host_work = 0.0  # [s] that passes with each frame of the host's: its own computing
+        self.host_work = 0.0  # [s] of the host's own computing with each of its frames
         self._devices = devices
         for device in devices:
             device.attach(Port(self._true_time, self._at, self._transmit, device))

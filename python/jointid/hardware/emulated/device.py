@@ -16,27 +16,27 @@ class DeviceBus(Protocol):
     """The services that a bus gives to the devices on it."""
 
     def now(self) -> float:
-        """Time [s] since the bus began; never goes back."""
+        """Return the time since the start [s]; it never decreases."""
 
     def at(self, when: float, event: Event) -> None:
-        """Run something when the clock gets there [s]."""
+        """Run a callable when the clock reaches a time [s]."""
 
     def transmit(self, message: can.Message) -> None:
-        """Put a device's frame on the wire."""
+        """Send a device's frame on the wire."""
 
 
 class Device(Protocol):
-    """A device on a bus: an emulated drive, a converter."""
+    """A device on a bus, for example an emulated drive or a converter."""
 
     def attach(self, bus: DeviceBus) -> None:
         """Remember the bus."""
 
     def receive(self, message: can.Message) -> None:
-        """A frame of the host's or of another device's has arrived, now."""
+        """Take a frame of the host or of another device, at its arrival."""
 
 
 class Agenda:
-    """What is to be run, and when; what is due at the same time runs in the order of asking."""
+    """Events and their times. Events at the same time run in the order in which they were added."""
 
     def __init__(self) -> None:
         self._events: list[tuple[float, int, Event]] = []
@@ -48,22 +48,22 @@ class Agenda:
 
     @property
     def next(self) -> float:
-        """When the next is due [s]; infinite when nothing is."""
+        """Return the time of the next event [s]; infinite without one."""
         return self._events[0][0] if self._events else float("inf")
 
     def pop(self) -> tuple[float, Event]:
-        """Take the next off, and when it was due."""
+        """Remove the next event. Return its time and the event."""
         when, _, event = heapq.heappop(self._events)
         return when, event
 
 
 class Port:
-    """Where one device is connected: the services of a bus, and who sends.
+    """Connection of one device to a bus: the services of the bus, and the sender of its frames.
 
     Parameters
     ----------
     now, at, transmit : callable
-        The bus's clock and agenda; what it does with a frame and its sender.
+        Clock and agenda of the bus; its function for a frame and the sender.
     device : Device
     """
 
@@ -78,5 +78,5 @@ class Port:
         self._transmit, self._device = transmit, device
 
     def transmit(self, message: can.Message) -> None:
-        """Put the device's frame on the wire."""
+        """Send the device's frame on the wire."""
         self._transmit(message, self._device)

@@ -14,20 +14,20 @@ from jointid.hardware.emulated.object_dictionary import (
     ObjectDictionary,
 )
 
-_LONGEST = 8  # errors that are kept
+_LONGEST = 8  # number of stored errors
 
 
 class Emergencies:
-    """What is wrong with a device, told to the bus when it appears and when it is gone.
+    """Report a device's errors on the bus when they appear and when they are gone.
 
-    Enters 1001h, 1003h and 1014h in the device's object dictionary.
+    Add 1001h, 1003h and 1014h to the device's object dictionary.
 
     Parameters
     ----------
     node : int
     objects : ObjectDictionary
     send : callable
-        Puts a frame on the bus: identifier and payload.
+        Sends a frame: identifier and payload.
     """
 
     def __init__(
@@ -45,7 +45,7 @@ class Emergencies:
         objects.constant(0x1014, 0, 4, self._identifier)
 
     def appear(self, code: int, register: int, *, told: bool = True) -> None:
-        """Note an error, and tell the bus.
+        """Note an error and report it on the bus.
 
         Parameters
         ----------
@@ -62,13 +62,13 @@ class Emergencies:
             self._send(self._identifier, struct.pack("<HB5x", code, self.register))
 
     def vanish(self) -> None:
-        """Tell the bus that no error is left; nothing where there was none."""
+        """Report on the bus that no error is left, if there was one."""
         if self.register:
             self.register = 0
             self._send(self._identifier, bytes(8))
 
     def forget(self) -> None:
-        """Without a word, as after power-up."""
+        """Clear all errors without a message, as after power-up."""
         self.register, self._history = 0, []
 
     def _clear_history(self, value: int) -> None:

@@ -1,4 +1,4 @@
-"""What can go wrong on an emulated bus and in an emulated drive, on demand."""
+"""Faults of an emulated bus and of an emulated drive, on demand."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import can
 
 from jointid.base.errors import InputError
 
-# What a drive shuts its motor down for: MF, and the emergency that it sends.
+# Reasons of a motor shutdown: MF, and the emergency that the drive sends.
 DRIVE_FAILURES = {
     "encoder loss": (0x4, 0x7300),
     "peak current": (0x8, 0x8311),
@@ -64,18 +64,18 @@ class BusFault:
         self._random = Random(self.seed)
 
     def acts(self, now: float) -> bool:
-        """Whether the fault is active now."""
+        """Return whether the fault is active now."""
         return self.start <= now < self.stop
 
     def hits(self, identifier: int, now: float) -> bool:
-        """Whether it affects a frame sent now."""
+        """Return whether the fault affects a frame sent now."""
         if not self.acts(now) or self.identifier not in (None, identifier):
             return False
         return self.probability >= 1.0 or self._random.random() < self.probability
 
 
 def drive_failure(kind: str) -> tuple[int, int]:
-    """MF and emergency code of a failure.
+    """Return MF and the emergency code of a failure.
 
     Raises
     ------
@@ -88,17 +88,17 @@ def drive_failure(kind: str) -> tuple[int, int]:
 
 
 def error_register(emergency: int) -> int:
-    """Bits of the error register 1001h that belong to an emergency's code (CiA 301)."""
+    """Return the bits of the error register 1001h for an emergency code (CiA 301)."""
     by_class = {0x2: 0x03, 0x3: 0x05, 0x4: 0x09}  # current, voltage, temperature
     if emergency == 0x8130:
         return 0x11  # communication
-    return by_class.get(emergency >> 12, 0x81)  # else the manufacturer's
+    return by_class.get(emergency >> 12, 0x81)  # others: manufacturer-specific
 
 
 def mangled(
     message: can.Message, faults: Sequence[BusFault], now: float, *, from_host: bool
 ) -> Iterator[tuple[can.Message, float]]:
-    """What becomes of a frame: copies of it, each with its extra delay [s]."""
+    """Return the copies of a frame after the faults, each with its extra delay [s]."""
     copies = [(_copy(message), 0.0)]
     for fault in faults:
         if not fault.hits(message.arbitration_id, now):

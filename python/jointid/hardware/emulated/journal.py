@@ -1,4 +1,4 @@
-"""What happens to an emulated drive, told line by line while it runs."""
+"""Report the events of an emulated drive line by line while it runs."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ from jointid.hardware.emulated.device import DeviceBus
 
 
 class Telling(Protocol):
-    """A device that can tell its condition."""
+    """A device that reports its condition."""
 
     def condition(self) -> dict[str, Any]:
-        """What counts as an event when it changes, by name, and what else is worth telling.
+        """Return the values that count as events when they change, and other values to report.
 
         Returns
         -------
         dict
-            "events": the values whose change is an event; any others; of JSON's types.
+            "events": the values that count as events when they change; and any others. All have JSON types.
         """
 
 
 class Journal:
-    """Writes a line of JSON whenever a device's condition has changed.
+    """Write a line of JSON whenever a device's condition changes.
 
-    It is a device itself, which hears all frames, and the `watch` of an `EmulatorThread`. A line has
-    "time", by the devices' clock, the device's condition, and "heard": when the last frame of each
-    identifier (in hexadecimal digits) arrived.
+    The journal is a device itself, which receives all frames, and the `watch` of an `EmulatorThread`. A line
+    has "time" on the devices' clock, the device's condition, and "heard": arrival time of the last frame of
+    each identifier (in hexadecimal digits).
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Journal:
         self._bus = bus
 
     def receive(self, message: can.Message) -> None:
-        """Note when it arrived."""
+        """Note the arrival time of a frame."""
         assert self._bus is not None, "attach the journal to a bus"
         self._heard[message.arbitration_id] = self._bus.now()
 

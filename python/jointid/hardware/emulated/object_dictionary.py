@@ -1,4 +1,4 @@
-"""The object dictionary of an emulated CANopen device, with the refusals that CiA 301 asks for."""
+"""The object dictionary of an emulated CANopen device, with the refusals that CiA 301 requires."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ WriteBytes = Callable[[bytes], None]
 
 
 class AccessError(Exception):
-    """An object that cannot be read or written so.
+    """An access to an object that is refused.
 
     Parameters
     ----------
@@ -40,16 +40,16 @@ class Entry:
     Attributes
     ----------
     size : int
-        Bytes; 0: of any length, as texts are.
+        Number of bytes; 0: any length, as for texts.
     signed : bool
     read : callable, optional
-        Returns its value. Default: it cannot be read.
+        Returns the value. Default: it cannot be read.
     write : callable, optional
-        Takes a number and raises `AccessError` where it is not accepted. Default: it cannot be written.
+        Takes a number and raises `AccessError` if it is not accepted. Default: it cannot be written.
     write_bytes : callable, optional
-        The same for one that is no number.
+        The same for a value that is not a number.
     sent, received : bool
-        It can be mapped into a PDO that the device sends, or receives.
+        Whether it can be mapped into a PDO that the device sends or receives.
     """
 
     size: int
@@ -71,12 +71,12 @@ class ObjectDictionary:
         self._defaults: dict[tuple[int, int], int] = {}
 
     def add(self, index: int, subindex: int, entry: Entry) -> None:
-        """Enter an object."""
+        """Add an object."""
         self._entries[index, subindex] = entry
         self._indices.add(index)
 
     def constant(self, index: int, subindex: int, size: int, value: int) -> None:
-        """Enter a number that never changes."""
+        """Add a number that never changes."""
         self.add(index, subindex, Entry(size=size, read=lambda: value))
 
     def variable(
@@ -89,7 +89,7 @@ class ObjectDictionary:
         signed: bool = False,
         check: Write | None = None,
     ) -> None:
-        """Enter a number that is kept, and takes its default again at a reset.
+        """Add a number that is stored and returns to its default at a reset.
 
         Parameters
         ----------
@@ -123,7 +123,7 @@ class ObjectDictionary:
         Raises
         ------
         AccessError
-            There is none.
+            The object does not exist.
         """
         found = self._entries.get((index, subindex))
         if found is None:
@@ -162,7 +162,7 @@ class ObjectDictionary:
 
 
 def packed(value: int, size: int) -> bytes:
-    """Return a number's lowest bytes, little-endian; it wraps where it is too large."""
+    """Return a number's lowest bytes, little-endian. A number that is too large wraps."""
     return (value & (1 << 8 * size) - 1).to_bytes(size, "little")
 
 
@@ -177,7 +177,7 @@ def within(lowest: int, highest: int) -> Write:
 
 
 def one_of(*allowed: int) -> Write:
-    """Return a check that a number is one of these."""
+    """Return a check that a number is one of the allowed values."""
 
     def check(value: int) -> None:
         if value not in allowed:

@@ -1,4 +1,4 @@
-"""PDOs of an emulated CANopen device: their parameters, the rules of mapping, when they are sent."""
+"""PDOs of an emulated CANopen device: parameters, mapping rules and transmission."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.hardware.emulated.object_dictionary import (
 )
 
 OFF = 0x80000000  # in a COB-ID: the PDO does not exist
-EVENT = (254, 255)  # transmission types: by an event of the manufacturer's or the profile's
+EVENT = (254, 255)  # transmission types: events of the manufacturer or of the profile
 _EXTENDED = 0x20000000
 _MOST = 8  # objects, and bytes, in a PDO
 # Identifiers that CiA 301 reserves: network, SYNC's neighbours, SDO, heartbeat.
@@ -26,18 +26,18 @@ class Pdo:
     Parameters
     ----------
     objects : ObjectDictionary
-        Gets them: `communication` and `mapping` are their indices.
+        Receives the parameters. `communication` and `mapping` are their indices.
     communication, mapping : int
     cob : int
-        After a reset, with the bit that switches it off.
+        COB-ID after a reset, with the bit that switches it off.
     mapped : sequence of int
-        After a reset: index, sub-index and bits in one number.
+        Mapping after a reset: index, sub-index and bits in one number.
     types : container of int
-        Transmission types that the device has.
+        Transmission types that the device supports.
     kind : int
         Transmission type after a reset.
     sent : bool
-        The device sends it.
+        Whether the device sends it.
     """
 
     def __init__(
@@ -68,7 +68,7 @@ class Pdo:
             objects.add(mapping, place + 1, self._place(place))
 
     def reset(self) -> None:
-        """As after power-up."""
+        """Restore the state after power-up."""
         self.cob, self.kind, mapped = self._defaults
         self.count = len(mapped)
         self.inhibit = self.event_time = 0
@@ -81,20 +81,20 @@ class Pdo:
 
     @property
     def mapped(self) -> tuple[int, ...]:
-        """What it holds: index, sub-index and bits in one number each."""
+        """Mapped objects: index, sub-index and bits in one number each."""
         return tuple(self._mapped[: self.count])
 
     def content(self) -> bytes:
-        """Return the bytes of what is mapped, now."""
+        """Return the present bytes of the mapped objects."""
         return b"".join(self._objects.read(entry >> 16, entry >> 8 & 0xFF) for entry in self.mapped)
 
     def take(self, payload: bytes) -> None:
-        """Write a frame's bytes to what is mapped.
+        """Write a frame's bytes to the mapped objects.
 
         Raises
         ------
         AccessError
-            An object does not accept them, or there are too few.
+            An object does not accept its value, or there are too few bytes.
         """
         begin = 0
         for entry in self.mapped:
@@ -122,7 +122,9 @@ class Pdo:
         if value & _EXTENDED or any(value & 0x7FF in reserved for reserved in _RESERVED):
             raise AccessError(OUT_OF_RANGE)
         if not (self.cob | value) & OFF and (self.cob ^ value) & 0x3FFFFFFF:
-            raise AccessError(WRONG_STATE)  # only a PDO that is off gets another identifier
+            raise AccessError(
+                WRONG_STATE
+            )  # the identifier of a PDO can change only while it is off
         self.cob = value
 
     def _set_kind(self, value: int) -> None:
@@ -158,15 +160,15 @@ class TransmitPdo(Pdo):
 
     _syncs = 0
     _asked = False
-    _next = 0.0  # [s], of the event timer
+    _next = 0.0  # [s], next time of the event timer
 
     def reset(self) -> None:
-        """As after power-up."""
+        """Restore the state after power-up."""
         super().reset()
         self._syncs, self._asked, self._next = 0, False, 0.0
 
     def synchronised(self) -> bool:
-        """A SYNC has come; return whether it is answered with this PDO."""
+        """Note a SYNC. Return whether this PDO is sent in answer."""
         if self.identifier is None:
             return False
         if self.kind == 0:
@@ -178,10 +180,10 @@ class TransmitPdo(Pdo):
         return self._syncs % self.kind == 0
 
     def event(self) -> bool:
-        """Something has happened that it tells; return whether it is sent at once."""
+        """Note an event that this PDO reports. Return whether it is sent at once."""
         if self.identifier is None:
             return False
-        self._asked = True  # of a PDO that is sent at the SYNC after an event
+        self._asked = True  # type 0: sent at the SYNC after an event
         return self.kind in EVENT
 
     def due(self, now: float) -> bool:

@@ -1,4 +1,4 @@
-"""The states of CiA 402 between a drive that is off and one whose motor is on."""
+"""States of CiA 402 from a drive that is off to a drive with its motor on."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ class PowerStates:
     Parameters
     ----------
     motor_on, failed : callable
-        Whether the motor is on, and was shut down.
+        Whether the motor is on; whether a failure switched it off.
     switch : callable
-        Switches the motor; raises `AccessError` where it cannot be switched on.
+        Switches the motor; raises `AccessError` if it cannot be switched on.
     acknowledge : callable
-        Clears what the drive was shut down for.
+        Clears the failure.
     """
 
     def __init__(
@@ -48,11 +48,11 @@ class PowerStates:
         return _WORDS[self.state]
 
     def forget(self) -> None:
-        """As after power-up."""
+        """Restore the state after power-up."""
         self._resting, self.word = "disabled", 0
 
     def control(self, word: int) -> None:
-        """Take a controlword.
+        """Execute a controlword.
 
         Raises
         ------

@@ -19,7 +19,7 @@ _SEGMENT = 7
 
 @dataclass(slots=True, kw_only=True)
 class _Transfer:
-    """A segmented transfer that goes on."""
+    """A segmented transfer in progress."""
 
     index: int
     subindex: int
@@ -30,7 +30,7 @@ class _Transfer:
 
 
 class SdoServer:
-    """Answers a client's requests, one transfer at a time.
+    """Answer a client's requests, one transfer at a time.
 
     Parameters
     ----------
@@ -42,16 +42,16 @@ class SdoServer:
         self._transfer: _Transfer | None = None
 
     def forget(self) -> None:
-        """Give a transfer up that goes on, as a reset does."""
+        """Drop a transfer in progress, as a reset does."""
         self._transfer = None
 
     def answer(self, payload: bytes) -> bytes | None:
-        """Return what answers a frame; None where the client has aborted.
+        """Return the answer to a frame; None if the client has aborted.
 
         Parameters
         ----------
         payload : bytes
-            Payload of a frame to the server; it is aborted unless it has eight bytes.
+            Payload of a frame to the server. Any length other than eight bytes is aborted.
         """
         if payload[:1] == b"\x80":
             self._transfer = None
@@ -74,7 +74,7 @@ class SdoServer:
             return self._download_segment(payload)
         if command == 3:
             return self._upload_segment(payload[0] >> 4 & 1)
-        self._transfer = None  # a new request ends one that goes on
+        self._transfer = None  # a new request ends a transfer in progress
         index, subindex = struct.unpack_from("<HB", payload, 1)
         if command == 1:
             return self._download(payload, index, subindex)
@@ -106,7 +106,7 @@ class SdoServer:
         transfer.content += payload[1 : 8 - (payload[0] >> 1 & 0x7)]
         if len(transfer.content) > _LARGEST:
             raise AccessError(_NO_MEMORY)
-        if payload[0] & 0x1:  # the last
+        if payload[0] & 0x1:  # last segment
             self._transfer = None
             length = len(transfer.content)
             if transfer.announced is not None and length != transfer.announced:

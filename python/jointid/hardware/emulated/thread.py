@@ -1,4 +1,4 @@
-"""Emulated devices on a bus of python-can's, in real time, in a thread."""
+"""Run emulated devices in real time, in a thread, on a python-can bus."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from jointid.hardware.emulated.device import Agenda, Device, Event, Port
 from jointid.hardware.emulated.faults import BusFault
 from jointid.hardware.emulated.wire import Wire
 
-_LONGEST_WAIT = 0.02  # [s]: so soon the thread sees that it is to end
-_OLDEST = 60.0  # [s]: a frame that is stamped earlier bears the time of another clock, or of one that was set
+_LONGEST_WAIT = 0.02  # [s], longest delay until the thread sees that it must end
+_OLDEST = 60.0  # [s]: an older stamp comes from another clock, or the clock was set
 _MOST_WAITING = 10_000  # frames that are read at once
-_SENDING = 0.01  # [s] that a full queue may take: the devices' own guards wait meanwhile
+_SENDING = 0.01  # [s] that a full queue may block; the devices' own guards wait meanwhile
 
 
 class EmulatorThread:
@@ -78,9 +78,9 @@ class EmulatorThread:
         self._failure: BaseException | None = None
         self._ending = threading.Event()
         self._began = time.perf_counter()
-        self._moment: float | None = None  # [s], of the event that runs
-        self._latest = 0.0  # [s], of the events that have run
-        # An interface that gives a sender its own frames back, without saying so.
+        self._moment: float | None = None  # [s], due time of the running event
+        self._latest = 0.0  # [s], latest time of the executed events
+        # An interface that returns a sender's own frames, without marking them.
         self._echoing = "udp_multicast" in type(bus).__module__.split(".")
         self._echoes: Counter[tuple[int, bytes]] = Counter()
         self.lost = 0
@@ -122,7 +122,7 @@ class EmulatorThread:
         except BaseException as failure:
             if error is None:
                 raise
-            # What the host saw follows from this: both are reported.
+            # This failure explains the host's observation, so both are reported.
             error.add_note(f"the emulator had failed: {type(failure).__name__}: {failure}")
 
     @property
@@ -161,7 +161,7 @@ class EmulatorThread:
             self._failure = error
 
     def _read(self, wait: float) -> None:
-        """Read what has come: all of it, since it has its place before what is due now."""
+        """Read all frames that have arrived, because they precede the events that are due now."""
         for _ in range(_MOST_WAITING):
             try:
                 message = self._bus.recv(wait)
@@ -185,7 +185,7 @@ class EmulatorThread:
         return True
 
     def _arrival(self, message: can.Message) -> float:
-        """When a frame came [s], by its stamp where that is of the machine's clock."""
+        """Return the arrival time of a frame [s], from its stamp if the machine's clock gave it."""
         age = time.time() - message.timestamp
         now = self._clock()
         return now - age if 0.0 <= age <= _OLDEST else now

@@ -1,4 +1,4 @@
-"""Two wires that one frame at a time is on; of those that wait, the lowest identifier goes next."""
+"""A wire that carries one frame at a time; of the waiting frames, the lowest identifier is next."""
 
 from __future__ import annotations
 
@@ -20,27 +20,27 @@ Arrive = Callable[[can.Message], None]
 
 @dataclass(slots=True, kw_only=True)
 class _Frame:
-    """A frame that waits for the wire, or is on it."""
+    """A frame that waits for the wire or is on it."""
 
     message: can.Message
     arrive: Arrive
-    put: float  # [s], when
-    delay: float  # [s], behind the wire
+    put: float  # [s], time at which it was queued
+    delay: float  # [s], after the wire
 
 
 class Wire:
-    """Gives each frame its time, and the wire to the frame of highest priority.
+    """Give each frame its time on the wire, by priority.
 
-    A sender's own frames keep their order: a queue in front of one controller.
+    A sender's own frames keep their order, as in the queue of one controller.
 
     Parameters
     ----------
     now, at : callable
-        The clock [s], and what runs something at a time.
+        The clock [s], and a function that runs an event at a time.
     bitrate : float or None
-        [bit/s]; None: frames take no time.
+        Bit rate [bit/s]. None: frames take no time.
     faults : sequence of BusFault
-        What goes wrong, and when.
+        Faults and their times.
     data_bitrate : float, optional
         Bit rate of the data of CAN FD frames [bit/s]. Default: the same.
     """
@@ -57,18 +57,18 @@ class Wire:
         self._bitrate, self._data_bitrate, self._faults = bitrate, data_bitrate, faults
         self._queues: dict[int, deque[_Frame]] = {}
         self._busy = False
-        self._free = 0.0  # [s], when the last frame was over
+        self._free = 0.0  # [s], end of the last frame
 
     def put(self, message: can.Message, sender: object, arrive: Arrive, *, from_host: bool) -> None:
-        """Let a frame wait for its turn.
+        """Queue a frame until the wire is free.
 
         Parameters
         ----------
         message : can.Message
         sender : object
-            Whose queue it waits in.
+            Owner of the queue.
         arrive : callable
-            Is given what arrives.
+            Receives the arriving frame.
         from_host : bool
         """
         now = self._now()
@@ -76,7 +76,7 @@ class Wire:
         for copy, delay in mangled(message, self._faults, now, from_host=from_host):
             queue.append(_Frame(message=copy, arrive=arrive, put=now, delay=delay))
         if queue and not self._busy:
-            self._at(now, self._arbitrate)  # behind whatever else is put now
+            self._at(now, self._arbitrate)  # after all frames that are queued now
 
     def _arbitrate(self) -> None:
         waiting = [queue for queue in self._queues.values() if queue]
@@ -100,25 +100,25 @@ class Wire:
 
 
 def _priority(message: can.Message) -> tuple[int, bool]:
-    """The lower wins, bit by bit; of two with one identifier the one with content."""
+    """Return the priority: the lowest value is sent first. Of equal identifiers, the frame with data is first."""
     identifier = message.arbitration_id
     return (identifier if message.is_extended_id else identifier << 18), message.is_remote_frame
 
 
 def bitrate_to_emulate(interface: str, channel: str | None, bitrate: float) -> float | None:
-    """Return the bit rate by which an emulator's frames are to take their time on a bus.
+    """Return the bit rate that an emulator has to imitate on a bus.
 
     Parameters
     ----------
     interface, channel : str
-        As python-can names them.
+        Names as in python-can.
     bitrate : float
         Bit rate of the emulated bus [bit/s].
 
     Returns
     -------
     float or None
-        None where a controller sends the frames, on a wire that takes its own time.
+        None if a controller sends the frames on a real wire, which takes its own time.
     """
     if interface == "socketcan":
         return None if (_NETWORKS / str(channel) / "device").exists() else bitrate
