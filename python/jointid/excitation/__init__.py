@@ -1,1 +1,1 @@
-"""The motion that identifies a joint's parameters best."""
+"""Design of the motion that identifies a joint's parameters best."""

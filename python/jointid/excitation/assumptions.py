@@ -1,4 +1,4 @@
-"""One line with a design's assumptions: the sensors' noise and the controller."""
+"""One line with the assumptions of a design: the sensors' noise and the controller."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ _VELOCITIES = {"counts": "velocity from its counts", "difference": "velocity fro
 
 
 def assumed(design: DesignFields) -> str:
-    """Return which sensors, controller and period a design was made with."""
+    """Return the sensors, the controller and the period that a design assumes."""
     sensors = list(_sensors(design.sensors, design.joint.kind == "prismatic"))
     return (
         f"assumes {', '.join(sensors) or 'sensors without noise'}; "
@@ -23,7 +23,7 @@ def assumed(design: DesignFields) -> str:
 
 
 def _sensors(sensors: _core.Sensors, prismatic: bool) -> Iterator[str]:
-    """How the sensors differ from exact ones; rare settings by their names."""
+    """Yield the differences of the sensors from exact ones; rare settings by their names."""
     usual: Mapping[str, Any] = _core.Sensors().asdict()
     stated = {name: each for name, each in sensors.asdict().items() if each != usual[name]}
     if "torque_noise" in stated:
@@ -39,7 +39,7 @@ def _sensors(sensors: _core.Sensors, prismatic: bool) -> Iterator[str]:
 
 
 def _controller(controller: Any) -> str:
-    """Its law, with what it believes of friction or its gains, and whether it feeds the torque sensor back."""
+    """Return the controller's law, its assumed friction or gains, and whether it feeds back the torque sensor."""
     settings: Mapping[str, Any] = controller.asdict()
     friction = {term.name for term in _core.terms() if term.friction}
     friction |= {shape.name for shape in _core.shapes()}

@@ -1,4 +1,4 @@
-"""The noise of the torque balance that the sensors cause."""
+"""Noise of the torque balance that the sensors cause."""
 
 from __future__ import annotations
 
@@ -8,13 +8,15 @@ from jointid import _core
 from jointid.excitation.simulated_friction import faded_speed, step_at_reversal
 from jointid.joint.joint import Joint
 
-_OWN = 3e-3  # of the torque limit: a sensor's noise where none is stated
-_COUNTS = 8000.0  # of a motor turn: an encoder where none is stated
+_OWN = 3e-3  # share of the torque limit: default noise of a torque sensor
+_COUNTS = 8000.0  # counts per motor revolution: default encoder
 _SMOOTHED = 9  # samples from which a velocity is derived
-_LEAST = 1e-6  # of the torque limit: what no balance is better than
-_SLOW = 0.15  # of the speed at which static friction fades: slower, noise decides when the joint breaks away
-_REVERSAL = 0.1  # of a period: how well samples tell when the joint reverses
-_STANDING = 1e-4  # of the largest speed
+_LEAST = 1e-6  # share of the torque limit: smallest noise of a balance
+_SLOW = (
+    0.15  # share of the fading speed of static friction, below which noise decides the breakaway
+)
+_REVERSAL = 0.1  # share of a period: accuracy with which samples show the time of a reversal
+_STANDING = 1e-4  # share of the largest speed
 
 
 def assumed_sensors(joint: Joint, torque: float) -> _core.Sensors:
@@ -34,9 +36,9 @@ def noise_of_balance(
     torque: float,
     velocity: float,
 ) -> _core.BalanceNoise:
-    """Return the noise of the balance of one joint, from the limits of torque [N·m] and velocity [rad/s].
+    """Return the noise of one joint's balance, from the limits of torque [N·m] and velocity [rad/s].
 
-    `period` is the time between samples of the simulation [s], `sampled` that of the recording.
+    `period` is the sampling period of the simulation [s], `sampled` that of the recording.
     """
     variance = (_LEAST * torque) ** 2
     if joint.sensor:
@@ -49,11 +51,11 @@ def noise_of_balance(
     if sensors.encoder_counts > 0.0:
         turn = sensors.encoder_counts * abs(joint.gear_ratio)
         position = 2.0 * math.pi / turn / math.sqrt(12.0)
-    # Of a straight line through so many of the recording's positions, however long the steps of the judge are.
+    # Straight line through this number of recorded positions, independent of the judge's step.
     derived = position * math.sqrt(12.0 / _SMOOTHED**3) / sampled
     slowest = max(_STANDING * velocity, 3.0 * derived, _SLOW * faded_speed(setup.joint))
     return _core.BalanceNoise(
-        # White in the recording's samples; fewer of them are as good as their means.
+        # The noise is white in the recording's samples. Fewer samples are as good as their means.
         torque=math.sqrt(variance * sampled / period),
         position=position,
         velocity=derived,

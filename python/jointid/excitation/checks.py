@@ -1,4 +1,4 @@
-"""Checks of the arguments of a design, before anything is simulated."""
+"""Checks of a design's arguments before a simulation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.excitation.request import Request
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import LAWS, Controller
 
-_FEWEST, _MOST = 8, 1_000_000  # control periods of a motion: more of them would fill the memory
+_FEWEST, _MOST = 8, 1_000_000  # control periods of a motion; more would fill the memory
 
 
 def check_arguments(
@@ -22,7 +22,7 @@ def check_arguments(
     parameters: Sequence[str] | None = None,
     callback: object = None,
 ) -> None:
-    """Check arguments of `design`, each as it is described there."""
+    """Check the arguments of `design`, which describes them."""
     if isinstance(controller, _core.OpenLoop):
         raise InputError(
             "a motion is designed for a controller that follows it",
@@ -51,7 +51,7 @@ def check_arguments(
 
 
 def check_signs(request: Request, ranges: Ranges) -> None:
-    """Check that no range of the prior begins below 0 for a parameter that cannot be negative."""
+    """Check that the prior has no range below 0 for a parameter that cannot be negative."""
     signed = {term.name: not term.non_negative for term in map(_core.term, request.terms)}
     for name, (low, high) in ranges.ranges.items():
         if low < 0.0 and not signed.get(name, False):
@@ -71,7 +71,7 @@ def check_length(duration: float, control_period: float) -> None:
 
 
 def check_gain(joint: Joint, request: Request) -> None:
-    """Check that the sensor's gain, as it is believed and bounded, cannot be 0."""
+    """Check that neither the prior nor the bounds of the sensor's gain contain 0."""
     gain = joint.parameters.get("sensor_gain")
     if gain is None or "sensor_gain" not in request.names or gain.min is None or gain.max is None:
         return

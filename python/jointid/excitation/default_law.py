@@ -1,4 +1,4 @@
-"""The controller that a design assumes by default."""
+"""Default controller of a design."""
 
 from jointid import _core
 from jointid.base.errors import InputError
@@ -6,14 +6,14 @@ from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 from jointid.simulation.plant import control_estimates
 
-_ROBUST = 0.03  # of the torque limit: the robust term
+_ROBUST = 0.03  # share of the torque limit: the robust term
 _STIFF = 80.0  # 1/s
 
 
 def default_controller(nominal: Joint, torque: float) -> Controller:
-    """Return a law that believes a joint with values, or one without a model where none compensates its friction.
+    """Return a law with the joint's values, or a law without a model if none can compensate the joint's friction.
 
-    `torque` is the limit of the drive, of which the robust term has a small part [N·m].
+    `torque` is the drive's limit [N·m]. The robust term has a small share of it.
     """
     try:
         law = _core.AdaptiveRobust(

@@ -1,4 +1,4 @@
-"""A designed motion: its course, its limits, and how well it will identify a joint."""
+"""A designed motion: its course, its limits, and the expected errors of identification."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ class Design(DesignFields, KeptResult):
     Attributes
     ----------
     status : str
-        "complete", or in a few words what is wrong.
+        "complete", or the problem in a few words.
     reason : str
-        What is wrong, in a sentence. Default: empty.
+        Description of the problem in a sentence. Default: empty.
     trajectory : Trajectory
         The motion, for `simulate` and for a session.
     joint : Joint
         The nominal joint: the values of the joint, or the middles of the prior's ranges.
-    controller : Controller
+    The controller that moves the joint.
         The controller that drives the joint.
     sensors : Sensors
         The sensors that record the motion.
@@ -61,7 +61,7 @@ class Design(DesignFields, KeptResult):
     weakest : str
         The parameter with the largest relative error.
     limited_by : str
-        What limits that error: a limit that is reached, the duration, the noise, …
+        Cause that limits that error: a limit that is reached, the duration, the noise, …
 
     Examples
     --------
@@ -108,7 +108,7 @@ class Design(DesignFields, KeptResult):
         return designed_motion(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of a saved design in JSON's types; a number that is not finite is a text."""
+        """Return the content of a saved design in JSON types. A number that is not finite is a text."""
         from jointid.excitation.design_document import document_of
 
         return document_of(self)
@@ -121,7 +121,7 @@ class Design(DesignFields, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the design that a JSON text holds.
+        """Return the design in a JSON text.
 
         Parameters
         ----------
@@ -130,7 +130,8 @@ class Design(DesignFields, KeptResult):
 
         Raises
         ------
-        InputError
+        The text is not JSON, is not a design, has a newer schema, or has an invalid value. The message shows
+        the place.
             Not JSON, not a design, a newer schema, or a value that cannot be used; the error names the place.
         """
         from jointid.base.schema import Plain, TableOf, read_json
@@ -144,14 +145,14 @@ class Design(DesignFields, KeptResult):
     def save(self, path: str | os.PathLike[str]) -> Path:
         """Write a file (.toml) that a session, `simulate` and `load_design` read, or .json; return its path.
 
-        A failed write changes no file.
+        If writing fails, an existing file is unchanged.
 
         Raises
         ------
         InputError
-            Another ending, or a folder that does not exist.
+            The ending is another one, or the folder does not exist.
         OSError
-            The file cannot be written; an existing one is untouched.
+            The file cannot be written. An existing file is unchanged.
         """
         from jointid.base.files import write_whole
         from jointid.excitation.design_document import design_text
@@ -168,7 +169,7 @@ class Design(DesignFields, KeptResult):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Return the design that `save` wrote; see `load_design`.
+        """Return the design in a file; see `load_design`.
 
         Parameters
         ----------
@@ -177,7 +178,7 @@ class Design(DesignFields, KeptResult):
         Raises
         ------
         InputError
-            The file cannot be read, or is no design; names file and key.
+            The file cannot be read, or is not a design. The message shows file and key.
         """
         from jointid.base.toml_file import read_toml
         from jointid.excitation.design_file import read_design
@@ -218,13 +219,13 @@ def load_design(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        A motion without expected errors, such as one written by hand, is not a design: a session and
-        `jointid simulate --trajectory` read it.
+        File of a design. A motion without expected errors, for example written by hand, is not a design. A
+        session and `jointid simulate --trajectory` read such a motion.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is no design; names file and key.
+        The file cannot be read, or is not a design. The message shows file and key.
 
     Examples
     --------

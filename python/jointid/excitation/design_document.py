@@ -1,4 +1,4 @@
-"""Writing a design's file: its tables, with comments."""
+"""Write a design's file: its tables, with comments."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _SAYS = COMMENTS | {
 
 
 def document_of(design: DesignFields) -> dict[str, Any]:
-    """Return a design as the tables of its file, in JSON's types."""
+    """Return a design as the tables of its file, in JSON types."""
     own = {item.name for item in fields(ExpectedError)} - {"name"}
     return {
         "schema": SCHEMA,
@@ -69,7 +69,7 @@ def document_of(design: DesignFields) -> dict[str, Any]:
             "control_period": design.control_period,
             "weakest": design.weakest,
             "limited_by": design.limited_by,
-            "jointid": _core.__version__,  # the last line: a file that was cut lacks it
+            "jointid": _core.__version__,  # the last line: a truncated file lacks it
         },
     }
 

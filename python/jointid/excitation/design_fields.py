@@ -1,4 +1,4 @@
-"""The fields of a design, and how much of its limits it uses."""
+"""The fields of a design, and the used share of its limits."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class DesignFields:
 
     @property
     def shares(self) -> dict[str, float]:
-        """How much of each limit is used, by the limit's name; 1 is all of it."""
+        """Return the used share of each limit, by the limit's name; 1 is all of it."""
         limits, peaks = self.limits, self.peaks
         low, high = limits.position
         middle, half = 0.5 * (low + high), 0.5 * (high - low)

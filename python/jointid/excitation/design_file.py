@@ -1,4 +1,4 @@
-"""Reading a design's tables: its motion, its assumptions, and its expected errors."""
+"""Read a design's tables: its motion, its assumptions, and its expected errors."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from jointid.simulation.setting_tables import (
 Saved = TypeVar("Saved", bound=DesignFields)
 
 _SIZE, _ERROR = Number(low=0.0), Number(low=0.0, infinite=True)
-_COUNT = Number(low=0, high=2**63 - 1, whole=True)  # as TOML's whole numbers
+_COUNT = Number(low=0, high=2**63 - 1, whole=True)  # range of TOML's whole numbers
 _DESIGN = Record(
     {
         **dict.fromkeys(("status", "weakest", "limited_by"), Text()),
@@ -53,7 +53,7 @@ _FILE = Record(
     {
         "schema": Number(low=1, whole=True),
         "design": _DESIGN,
-        "trajectory": Plain(),  # read as any motion's
+        "trajectory": Plain(),  # read as in any motion's file
         "peaks": Plain(),
         "limits": _LIMITS,
         "expected": TableOf(_EXPECTED, 1000),
@@ -69,12 +69,12 @@ _FILE = Record(
 
 
 def read_design(document: Mapping[str, Any], cls: type[Saved], place: str = "") -> Saved:
-    """Return the design of this class that the tables of a file hold; `place` is the file.
+    """Return the design of this class in the tables of a file; `place` is the file.
 
     Raises
     ------
     InputError
-        It is no design; names the key.
+        The tables are not a design. The message names the key.
     """
     if "design" not in document and "trajectory" in document:
         raise InputError(
@@ -83,7 +83,7 @@ def read_design(document: Mapping[str, Any], cls: type[Saved], place: str = "") 
     check_schema(document)
     tables = _FILE.read(dict(document), "")
     motion = motion_of({name: tables[name] for name in ("trajectory", "peaks")})
-    assert motion.peaks is not None  # the schema asks for it
+    assert motion.peaks is not None  # required by the schema
     expected = {name: ExpectedError(name=name, **each) for name, each in tables["expected"].items()}
     about = tables["design"]
     del about["jointid"]

@@ -19,18 +19,18 @@ class DesignSearch:
     evaluations : int
         Approximate number of motions to try. Default 3600: a few seconds for 12 s of motion.
     joints : int
-        Number of joints of the prior that each motion is judged with. Default 4.
+        Number of joints drawn from the prior to judge each motion. Default 4.
     rehearsals : int
-        Number of simulated recordings with noise that give the errors of the motion found. Default 256.
+        Number of simulated recordings with noise that give the errors of the chosen motion. Default 256.
     seed : int
-        Default 0. The same seed gives the same motion on any number of threads.
+        Default 0. The same seed gives the same motion with any number of threads.
     threads : int
-        0 (default): all.
+        Number of threads. Default 0: all processors.
 
     Raises
     ------
     InputError
-        A value that cannot be used.
+        A value is invalid.
 
     Examples
     --------
@@ -63,12 +63,12 @@ class DesignSearch:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DesignProgress:
-    """How far a search for a motion is.
+    """Progress of the search for a motion.
 
     Attributes
     ----------
     number, total : int
-        Motions tried so far, and in all.
+        Motions tried so far, and motions in total.
     best : float
         Criterion of the best motion so far: a relative error.
 

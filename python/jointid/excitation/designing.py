@@ -37,15 +37,15 @@ from jointid.simulation.trajectory import Trajectory
 Array = NDArray[np.float64]
 Callback = Callable[[DesignProgress], object]
 
-_RUNS = 2  # searches, of which the better motion is taken by rehearsing both
-_COARSE = 2  # times the control period, in the search
-_FIRST = 48  # motions drawn at random: they show which parameters of which joint count
-_DETERMINED = 0.15  # relative error that one of them must reach
-_TRIED = 0.2  # of the rehearsals, to tell the motions found apart
-_CONTRADICTED = 1.25  # times the information's error: the information misses something
-_OVERSTATED = 1.5  # times the error counted; less may be the luck of few rehearsals
-_USUAL = math.radians(20.0)  # of the thesis's motion [rad]
-_CYCLE = 6.0  # the same [s]
+_RUNS = 2  # number of searches; rehearsals decide between their motions
+_COARSE = 2  # multiple of the control period, in the search
+_FIRST = 48  # random motions that show which parameters of which joint count
+_DETERMINED = 0.15  # relative error that one of these motions must reach
+_TRIED = 0.2  # share of the rehearsals, to compare the motions found
+_CONTRADICTED = 1.25  # times the information's error: the information misses an effect
+_OVERSTATED = 1.5  # ratio to the counted error; a smaller one may be chance with few rehearsals
+_USUAL = math.radians(20.0)  # amplitude of the thesis's motion [rad]
+_CYCLE = 6.0  # cycle of the thesis's motion [s]
 _SAME_TORQUE = 1.01  # 8 A of current are 159.984 of 160 N·m
 
 
@@ -64,32 +64,32 @@ def design_excitation(
     known: Known | None = None,
     callback: Callback | None = None,
 ) -> Design:
-    """Return the motion that identifies a joint best, within limits.
+    """Return the motion that identifies a joint best within limits.
 
-    Motions are sums of sines that start and end at rest. A genetic algorithm searches for the motion with
-    the most information about the parameters, in noise-free simulations of several joints of the prior.
-    The best motions are then simulated with noise and identified, which gives the expected errors.
+    Motions are sums of sines that start and end at rest. A genetic algorithm searches for the motion with the
+    most information about the parameters. It uses noise-free simulations of several joints drawn from the
+    prior. The best motions are then simulated with noise and identified, which gives the expected errors.
 
     Parameters
     ----------
     joint : Joint
-        The motion is for its model's free parameters.
+        The joint; the motion is for the free parameters of its model.
     limits : MotionLimits or mapping, optional
-        Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
-        the sensor [N·m]. Every joint of the prior keeps them. Default: the joint's.
+        Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and sensor range
+        [N·m]. Every joint drawn from the prior keeps them. Default: the joint's limits.
     duration : float
-        [s]. Default 12.
+        Duration of the motion [s]. Default 12.
     controller : controller, optional
-        The controller that will drive the joint. Default: an adaptive-robust law with the nominal
-        joint's values and without torque feedback.
+        The controller that will move the joint. Default: an adaptive-robust law with the nominal joint's
+        values and without torque feedback.
     sensors : Sensors, optional
         Default: a torque sensor with noise of 0.3 % of the torque limit; without a torque sensor, an
         encoder of 8000 counts per motor revolution.
     parameters : sequence of str, optional
-        Parameters that the motion is for. Default: all free parameters.
+        Parameters to identify. Default: all free parameters.
     criterion : {"worst", "determinant"}
-        What to minimize: the largest relative error, or the product of all. Default "worst". The error of
-        a value near 0 is relative to a tenth of its range.
+        Error to minimize: the largest relative error, or the product of all. Default "worst". For a value
+        near 0, the error is relative to a tenth of its range.
     prior : mapping of str to (low, high), or sequence of mappings, optional
         Ranges of the free parameters, or values of several joints, the nominal one first.
         Default: the joint's bounds; ±30 % of a value without bounds.
@@ -99,7 +99,7 @@ def design_excitation(
     known : Known, optional
         Information about parameters from existing recordings.
     callback : callable, optional
-        Called with a `DesignProgress` during the search; return True to end the search early.
+        Called with a `DesignProgress` during the search. Return True to end the search early.
 
     Returns
     -------
@@ -108,8 +108,8 @@ def design_excitation(
     Raises
     ------
     InputError
-        An argument that cannot be used, a parameter without a range, limits that allow no motion, or a
-        control loop that is unstable for some joint of the prior.
+        An argument is invalid, a parameter has no range, the limits allow no motion, or the control loop is
+        unstable for a joint drawn from the prior.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
 
@@ -163,7 +163,7 @@ def design_excitation(
 
 @dataclass(frozen=True, slots=True)
 class _Final:
-    """A motion at its final size: its peaks, why it cannot be used, its rehearsals, and its criterion."""
+    """A motion at its final size: peaks, reason against its use, rehearsals and criterion."""
 
     trajectory: Trajectory
     peaks: Peaks
@@ -173,7 +173,7 @@ class _Final:
 
 
 class _Designing:
-    """One design: the judges, the search, the choice among what it finds."""
+    """One design: the judges, the search, and the choice among the motions found."""
 
     def __init__(
         self, situation: Situation, settings: DesignSearch, callback: Callback | None
@@ -188,7 +188,7 @@ class _Designing:
         self._counted: tuple[str, ...] = situation.request.wanted
 
     def design(self, nominal: Joint) -> Design:
-        """Search, choose, and hold the limits for many joints."""
+        """Search, choose, and keep the limits for many joints."""
         situation, settings = self._situation, self._settings
         judge = self._judge_of_the_search()
         self._counted = self._counting(judge)
@@ -206,7 +206,7 @@ class _Designing:
         chosen = motions[int(np.argmin(worth))]
         final = self._shrunk(chosen)
         if usual is not None and chosen is not usual:
-            # Few rehearsals may flatter a motion; all of them, at the limits that it keeps, decide.
+            # Few rehearsals may give too small errors. All rehearsals, at the final size, decide.
             final = min(
                 final, self._shrunk(usual), key=lambda each: (bool(each.problem), each.worth)
             )
@@ -238,7 +238,7 @@ class _Designing:
         return replace(made, limited_by=what_limits(made, situation, judgements[0]))
 
     def _shrunk(self, motion: Trajectory) -> _Final:
-        """Return a motion that many joints keep the limits with, and all its rehearsals."""
+        """Return the motion at a size with which many joints keep the limits, and all its rehearsals."""
         situation, settings = self._situation, self._settings
         trajectory, peaks, problem = shrunk(situation, motion, settings.seed, settings.threads)
         rehearsal = rehearse(
@@ -253,13 +253,13 @@ class _Designing:
         return _Final(trajectory, peaks, problem, rehearsal, worth)
 
     def _counting(self, judge: _core.Excitation) -> tuple[str, ...]:
-        """Return the wanted parameters that some motion determines for the nominal joint; all if none."""
+        """Return the wanted parameters that some motion determines for the nominal joint, or all parameters."""
         request = self._situation.request
         kept = dict(zip(request.names, judge.joints[0].weight.tolist(), strict=True))
         return tuple(name for name in request.wanted if kept[name] > 0.0) or request.wanted
 
     def _relative(self, errors: Mapping[str, float]) -> dict[str, float]:
-        """Return errors of the wanted parameters over these parameters' sizes."""
+        """Return the errors of the wanted parameters divided by the parameters' sizes."""
         situation, values = self._situation, self._values[0]
         return {
             n: errors[n] / situation.ranges.scale(n, values[n]) for n in situation.request.wanted
@@ -268,9 +268,10 @@ class _Designing:
     def _worth(self, motion: Trajectory, rehearsal: Rehearsal) -> float:
         """Return the criterion that the search minimizes, for the nominal joint.
 
-        The information's errors scatter less than those of few rehearsals; the rehearsals' mean adds the bias, which
-        the information lacks. Counted errors that contradict both decide: without a torque sensor, position errors
-        cancel between windows, and the information's errors are several times too large.
+        The information's errors scatter less than the errors of few rehearsals. The rehearsals' mean adds the
+        bias, which the information lacks. If the counted errors contradict both, they decide. Example:
+        without a torque sensor, position errors cancel between windows, and the information's errors are
+        several times too large.
         """
         judgement = self._fine.judge(motion.core)[0]
         bias, counted = self._relative(rehearsal.bias()), self._relative(rehearsal.rms())
@@ -287,7 +288,7 @@ class _Designing:
         return float(np.mean(np.log(np.maximum(shares, 1e-12))))
 
     def _judge_of_the_search(self) -> _core.Excitation:
-        """Return a judge with a longer control period where that says the same of some motions."""
+        """Return a judge with a longer control period if it gives the same result for some motions."""
         situation, threads = self._situation, self._settings.threads
         random = np.random.default_rng(self._settings.seed)
         first = random.random((self._genes, _FIRST))
@@ -329,7 +330,7 @@ class _Designing:
                 callback=observe,
             )
             self._evaluations += found.evaluations
-            # A motion far beyond a limit costs as much as one whose loop is not stable.
+            # A motion far beyond a limit costs as much as an unstable loop.
             if (
                 found.penalty >= _UNSTABLE
                 and _judged(judge, _trajectory(judge, found.best)) is None
@@ -345,7 +346,7 @@ class _Designing:
         return motions
 
     def _usual(self) -> Trajectory | None:
-        """Return the thesis's motion, ending at rest, where every joint keeps the limits: a design is not worse."""
+        """Return the thesis's motion, ending at rest, if every joint keeps the limits. The design must not be worse."""
         situation = self._situation
         low, high = situation.limits.position
         if not low <= -_USUAL <= _USUAL <= high:
@@ -368,7 +369,7 @@ class _Designing:
         return motion
 
 
-_UNSTABLE = 1e100  # of the criterion, a relative error
+_UNSTABLE = 1e100  # value of the criterion, a relative error
 
 
 def _trajectory(judge: _core.Excitation, genes: Array) -> Trajectory:
@@ -376,7 +377,7 @@ def _trajectory(judge: _core.Excitation, genes: Array) -> Trajectory:
 
 
 def _judged(judge: _core.Excitation, motion: Trajectory) -> list[_core.MotionJudgement] | None:
-    """Return the judgements; None where the loop is not stable."""
+    """Return the judgements; None if the loop is unstable."""
     try:
         return list(judge.judge(motion.core))
     except InputError:
@@ -384,12 +385,12 @@ def _judged(judge: _core.Excitation, motion: Trajectory) -> list[_core.MotionJud
 
 
 def _with_model(joint: Joint) -> Joint:
-    """Return the joint with a model that has a name: the richest that is usual, where it has none."""
+    """Return the joint with a named friction model; the richest usual model if it has none."""
     return joint if joint.model.named else joint.replace(model=joint.model.replace(name="stribeck"))
 
 
 def _matrix(known: Known | None, names: tuple[str, ...]) -> Array:
-    """Return known information in the order of the free parameters."""
+    """Return the known information in the order of the free parameters."""
     matrix = np.zeros((len(names), len(names)))
     if known is None:
         return matrix

@@ -1,4 +1,4 @@
-"""Expected errors of a motion, and what limits the largest."""
+"""Expected errors of a motion, and the cause that limits the largest."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from jointid.excitation.rehearsal import Rehearsal
 
 Array = NDArray[np.float64]
 
-_REACHED = 0.95  # of a limit
-_LARGE = 0.3  # relative error of what is hardly determined
+_REACHED = 0.95  # share of a limit
+_LARGE = 0.3  # relative error of a parameter that is hardly determined
 _WEAKEST = 1e-13  # eigenvalue of a correlation matrix
-_TOGETHER = 0.8  # correlation of errors that hang together
+_TOGETHER = 0.8  # correlation above which two errors count as correlated
 
 
 def expected_errors(
@@ -29,9 +29,9 @@ def expected_errors(
 ) -> dict[str, ExpectedError]:
     """Return the expected error of each wanted parameter.
 
-    The errors counted in the rehearsal hold for the nominal joint; those of other joints grow as the information's do.
-    With information from other recordings, this motion's information shrinks by the same factors: what is known can
-    only make an error smaller.
+    The errors counted in the rehearsal hold for the nominal joint. Errors of other joints grow by the same
+    factor as their errors from the information. With information from other recordings, this motion's
+    information shrinks by the same factors, because prior knowledge can only reduce an error.
     """
     request, ranges = situation.request, situation.ranges
     units = _units(situation)
@@ -71,7 +71,7 @@ def expected_errors(
 
 
 def what_limits(design: Design, situation: Situation, judgement: _core.MotionJudgement) -> str:
-    """Return one sentence: limits that are reached, correlated parameters, noise and duration."""
+    """Return one sentence with the causes: limits that are reached, correlated parameters, noise and duration."""
     reasons = []
     if not design.parameters[design.weakest].relative < _LARGE:
         reasons.append("no motion within the limits was found that determines it")
@@ -95,7 +95,7 @@ def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: st
 
 
 def _alone(information: Array) -> Array:
-    """Standard errors by an information matrix alone; infinite where it is zero."""
+    """Return the standard errors from an information matrix; infinite where it is zero."""
     seen = np.sqrt(np.maximum(np.diag(information), 0.0))
     size = np.where(seen > 0.0, seen, 1.0)
     strength, directions = np.linalg.eigh(information / np.outer(size, size))

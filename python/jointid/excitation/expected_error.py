@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExpectedError:
-    """Expected error of one parameter, from one recording of a motion and from what is known already.
+    """Expected error of one parameter, from one recording of a motion and from prior information.
 
     Attributes
     ----------
@@ -20,10 +20,10 @@ class ExpectedError:
     relative : float
         `stderr` divided by the parameter's size.
     worst : float
-        Largest relative error over the joints that the motion was judged with.
+        Largest relative error over the joints that judge the motion.
     before : float, optional
-        Standard error without this motion [unit]; infinite if nothing determines the parameter. Default
-        None: no earlier information.
+        Standard error without this motion [unit]; infinite if nothing determines the parameter. Default None:
+        no prior information.
     """
 
     name: str

@@ -1,4 +1,4 @@
-"""Limits that hold for every joint of the prior, with noise, between samples."""
+"""Reduce a motion until every joint of the prior keeps the limits, with noise, between samples."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
 _JOINTS = 48
-_CORNERS = 16  # of the prior
-_STEPS = 8  # times that a motion is made smaller
-_AIM = 0.99  # share of the limit
-_LEAST = 0.8  # of a motion's size, in one step
+_CORNERS = 16  # corners of the prior's ranges
+_STEPS = 8  # number of reductions
+_AIM = 0.99  # share of the limit to reach
+_LEAST = 0.8  # smallest size in one step, relative to the last
 _TOGETHER = 16
 
 
 def shrunk(
     situation: Situation, trajectory: Trajectory, seed: int, threads: int
 ) -> tuple[Trajectory, Peaks, str]:
-    """Return the motion, made smaller until many joints keep all limits, and what they reach.
+    """Return the motion, reduced until many joints keep all limits, and the values that they reach.
 
-    The last value names the limit that is exceeded, by how much and for which joint; it is empty if all are kept.
+    The last value describes the exceeded limit, the excess and the joint. It is empty if all limits are kept.
     """
     joints = situation.ranges.joints(_JOINTS, seed + 1)
     joints += situation.ranges.corners(_CORNERS, seed + 2)
-    # Corners first: they go farthest, and a motion that is too large for some joints need not be tried with the rest.
+    # Corners first: they move farthest. If a motion is too large for them, the other joints need no test.
     groups = [(at, joints[at : at + _TOGETHER]) for at in range(0, len(joints), _TOGETHER)][::-1]
     tried: list[tuple[float, float]] = []
     size = 1.0
@@ -59,10 +59,10 @@ def shrunk(
 
 
 def _next_size(tried: Sequence[tuple[float, float]]) -> float:
-    """Return the size of the next motion, from the sizes tried and the largest share of a limit in each.
+    """Return the next size of the motion, from the tried sizes and the largest share of a limit at each.
 
-    A position scales with the motion; of a torque friction and gravity stay. So from the second size on the share is
-    extrapolated along the last two, but not to less than four fifths of the size.
+    A position scales with the motion. In a torque, friction and gravity do not. From the second size on the
+    share is therefore extrapolated from the last two, but to at least four fifths of the size.
     """
     size, share = tried[-1]
     proportional = _AIM / share * size
@@ -98,7 +98,7 @@ def _recordings(
 def _unstable(
     situation: Situation, trajectory: Trajectory, joints: Sequence[Mapping[str, float]]
 ) -> str:
-    """The first joint with an unstable loop, for a sentence."""
+    """Return the first joint with an unstable loop, as part of a sentence."""
     for each in joints:
         try:
             _recordings(situation, trajectory, [each], 0, 1)

@@ -19,7 +19,7 @@ class Known:
     Attributes
     ----------
     names : tuple of str
-        The parameters; nothing is known of others.
+        Known parameters. Nothing is known about others.
     information : ndarray, shape (p, p)
         Inverse of the covariance [1 / product of the two units]; singular if a combination is not determined.
 
@@ -44,7 +44,7 @@ class Known:
         object.__setattr__(self, "information", 0.5 * (matrix + matrix.T))
 
     def stderr(self) -> dict[str, float]:
-        """Standard errors by this information alone, by name; infinite if it does not determine a parameter."""
+        """Return the standard errors from this information, by name; infinite if it does not determine a parameter."""
         scale = np.sqrt(np.diag(self.information))
         seen = scale > 0.0
         errors = dict.fromkeys(self.names, float("inf"))

@@ -1,4 +1,4 @@
-"""The core's judge of motions, made from a joint, its prior, its controller and its limits."""
+"""Build the core's judge of motions from a joint, its prior, its controller and its limits."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ from jointid.simulation.batch import setup_of
 Array = NDArray[np.float64]
 
 SINES = 8
-_ALIKE = 0.2  # of an error: what the search may take for the same, before the finest judge decides
-_FADE = 0.5  # s, of a motion of 10 s or more
-_WINDOW = 0.01  # s
-_MARGIN = 0.01  # of each limit, that the reference leaves to the joint
-_TORQUE_MARGIN = 0.03  # the same of the torque, which noise moves
-_FASTEST = 8.0  # Hz
+_ALIKE = 0.2  # relative difference of errors that the search ignores
+_FADE = 0.5  # [s], for a motion of 10 s or more
+_WINDOW = 0.01  # [s]
+_MARGIN = 0.01  # share of each limit that the reference leaves to the joint
+_TORQUE_MARGIN = 0.03  # the same for the torque, which noise changes
+_FASTEST = 8.0  # [Hz]
 _UNLIMITED = 1e300
 
 
 def fade_of(duration: float) -> float:
-    """Return the time over which a motion begins and ends [s]."""
+    """Return the time in which a motion fades in and out [s]."""
     return min(_FADE, 0.05 * duration)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """All by which a motion is judged, except the motion itself."""
+    """All data that judge a motion, except the motion itself."""
 
     joint: Joint
     request: Request
@@ -51,12 +51,12 @@ class Situation:
     duration: float  # [s]
     control_period: float  # [s]
     criterion: str
-    known: Array  # information at hand about the free parameters, shape (p, p)
+    known: Array  # prior information about the free parameters, shape (p, p)
 
     def judge(
         self, values: list[dict[str, float]], *, coarse: int = 1, believed: bool = False
     ) -> _core.Excitation:
-        """Return the judge for joints with these values, with a control period that is `coarse` times as long.
+        """Return the judge for joints with these values. The control period is `coarse` times as long.
 
         If `believed`, the prior's ranges count as information.
         """
@@ -81,7 +81,7 @@ class Situation:
 
     @functools.cached_property
     def _free(self) -> Joint:
-        """The joint with the torque limit of the motion, without its free parameters."""
+        """Return the joint with the torque limit of the motion and without its free parameters."""
         torque = self.limits.torque
         limited = self.joint
         if torque is not None:
@@ -93,7 +93,7 @@ class Situation:
     def setup(
         self, values: Mapping[str, float], scenario: _core.Scenario, seed: int = 0
     ) -> _core.Setup:
-        """Return the run of one joint."""
+        """Return the simulation run of one joint."""
         return setup_of(self.with_values(values), self.controller, seed, 0.0, None, scenario)[0]
 
     def _drawn(
@@ -121,7 +121,7 @@ class Situation:
             ),
             scale=scale,
             weight=np.array([float(name in self.request.wanted) for name in names]),
-            # The information of listed joints is in `known`; a range adds its own.
+            # The information of listed joints is in `known`. A range adds its own information.
             known=self.known + own if believed and not self.ranges.drawn else self.known,
             inertia=inertia,
             viscous=largest_viscous(setup.joint),
@@ -129,8 +129,8 @@ class Situation:
 
     @property
     def torque(self) -> float:
-        """The largest torque of the drive [N·m]."""
-        assert self.limits.torque is not None  # MotionLimits.of sees to it
+        """Largest torque of the drive [N·m]."""
+        assert self.limits.torque is not None  # `MotionLimits.of` ensures it
         return self.limits.torque
 
     def _held(self) -> _core.HeldLimits:
@@ -185,7 +185,7 @@ class Situation:
         )
 
     def _needs(self, values: list[dict[str, float]]) -> tuple[float, float, float]:
-        """Return inertia, viscous friction, and dry friction with load, of the joint that needs most."""
+        """Return inertia, viscous friction, and dry friction with load, each of the joint that needs most."""
         scenario = _core.Scenario(
             duration=self.duration,
             control_period=self.control_period,
@@ -206,7 +206,7 @@ class Situation:
 def alike(
     fine: list[_core.MotionJudgement] | None, coarse: list[_core.MotionJudgement] | None
 ) -> bool:
-    """Whether the judgements of a motion at two control periods hardly differ, for every joint."""
+    """Return whether the judgements of a motion at two control periods hardly differ, for every joint."""
     if fine is None or coarse is None:
         return fine is None and coarse is None
     ratios = [np.abs(np.log(a.errors / b.errors)) for a, b in zip(fine, coarse, strict=True)]

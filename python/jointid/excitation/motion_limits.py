@@ -14,36 +14,36 @@ from jointid.joint.joint import Joint
 from jointid.simulation.plant import torque_limit
 
 OWN_SHARE = 0.9
-"""Of the joint file's window and velocity, where no other is stated: a session stops at the file's own."""
+"""Share of the joint file's window and velocity that a motion uses by default, because a session stops at them."""
 
 _OWNER = "limits"
-_NARROWEST, _FARTHEST = 1e-9, 1e9  # of a window [rad] or [m]
-_SMALLEST = 1e-9  # of the other limits: what is used of them is a quotient
+_NARROWEST, _FARTHEST = 1e-9, 1e9  # [rad] or [m], of a window
+_SMALLEST = 1e-9  # lowest other limit, because the used share divides by it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionLimits:
-    """Limits of a designed motion. The joint's own motion keeps them, not only its reference.
+    """Limits of a designed motion. The joint's own motion keeps them, in addition to its reference.
 
     For a prismatic joint, lengths are in m and torques are forces.
 
     Parameters
     ----------
     position : tuple of float
-        Lowest and highest [rad].
+        Lowest and highest position [rad].
     velocity : float
-        Largest magnitude [rad/s].
+        Largest magnitude of the velocity [rad/s].
     acceleration : float, optional
-        Largest magnitude of the reference [rad/s²]. Default: not limited.
+        Largest magnitude of the reference's acceleration [rad/s²]. Default: not limited.
     torque : float, optional
-        Largest magnitude of the drive at the output [N·m]. Default: not limited; `of` takes the joint's.
+        Largest magnitude of the drive torque at the joint [N·m]. Default: not limited; `of` takes the joint's limit.
     sensor_range : float, optional
         Largest magnitude of the torque at the joint's torque sensor [N·m]. Default: not limited.
 
     Raises
     ------
     InputError
-        A limit that is not a finite number above 0, or an empty window.
+        A limit is not a finite number above 0, or the window is empty.
 
     Examples
     --------
@@ -94,21 +94,21 @@ class MotionLimits:
 
     @classmethod
     def of(cls, given: MotionLimits | Mapping[str, Any] | None, joint: Joint) -> MotionLimits:
-        """Return limits; where one is missing, the joint's.
+        """Return limits. Missing limits come from the joint.
 
         Parameters
         ----------
         given : MotionLimits, mapping or None
             A mapping has fields of `MotionLimits`.
         joint : Joint
-            Of its window and velocity nine tenths are used, because a session stops at them; its torque
-            (the smaller of torque and current) is used completely.
+            The joint. Nine tenths of its window and velocity are used, because a session stops at them. Its
+            torque limit (the smaller of torque and current) is used completely.
 
         Raises
         ------
         InputError
-            An unknown name, a value that cannot be used, a required limit that is missing, or a range of
-            a sensor that the joint does not have.
+            A name is unknown, a value is invalid, a required limit is missing, or the joint does not have the
+            sensor of a given range.
 
         Examples
         --------
@@ -161,7 +161,7 @@ class MotionLimits:
 
 
 def _within(limits: MotionLimits, joint: Joint) -> None:
-    """Refuse limits beyond the joint's own."""
+    """Refuse limits beyond the joint's own limits."""
     fastest, window = joint.limits.velocity, joint.limits.position
     if fastest is not None and limits.velocity > fastest:
         raise InputError(
@@ -180,7 +180,7 @@ def _within(limits: MotionLimits, joint: Joint) -> None:
 
 
 def _own(joint: Joint) -> dict[str, Any]:
-    """The part of a joint's limits that a motion may use."""
+    """Return the part of a joint's limits that a motion may use."""
     known = joint.limits
     window = known.position
     if window is not None:

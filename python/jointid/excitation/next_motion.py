@@ -1,4 +1,4 @@
-"""What to record next: the motion that adds most to an estimate."""
+"""Design the next motion: the one that improves an estimate most."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from jointid.excitation.prior import Prior
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller
 
-_JOINTS = 48  # joints that have to keep the limits
+_JOINTS = 48  # joints that must keep the limits
 
 
 def motion_after(
@@ -36,7 +36,7 @@ def motion_after(
     search: DesignSearch | None = None,
     **options: Any,
 ) -> Design:
-    """Design the motion of `Estimate.next_motion`; `joint` adds facts that the estimate's joint lacks."""
+    """Design the motion of `Estimate.next_motion`. `joint` adds facts that the estimate's joint lacks."""
     posterior = posterior_of(estimate)
     wanted = posterior.names if parameters is None else tuple(parameters)
     for name in wanted:

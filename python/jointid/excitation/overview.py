@@ -26,7 +26,7 @@ def overview_of(design: DesignFields) -> Overview:
 
 
 def _answer(design: DesignFields) -> tuple[str, ...]:
-    """Return the level, and in sentences whether the motion may be used and how well the worst parameter is known."""
+    """Return the level, and sentences: whether the motion may be used, and the error of the worst parameter."""
     if design.status != COMPLETE:
         return "not usable", f"Not usable: {design.status}.", *filter(None, [design.reason])
     errors = {name: each.worst for name, each in design.parameters.items()}

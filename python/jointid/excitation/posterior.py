@@ -1,4 +1,4 @@
-"""An estimate's knowledge of its joint: information, possible joints, the sensor's noise."""
+"""Knowledge about an estimate's joint: information, possible joints, the sensor's noise."""
 
 from __future__ import annotations
 
@@ -22,37 +22,37 @@ from jointid.problem.constant_torque import undivided
 
 Array = NDArray[np.float64]
 
-_FACTOR = 3.0  # between a value and the farthest joint that is drawn, where no bound is nearer
-_WIDEST = 0.5  # of the value: a standard deviation beyond it is drawn as this
-_MEDIAN = 0.6745  # of the magnitude of normal noise, in its standard deviations
+_FACTOR = 3.0  # ratio of the farthest drawn joint to the value, if no bound is nearer
+_WIDEST = 0.5  # share of the value: largest standard deviation for drawing
+_MEDIAN = 0.6745  # median of the magnitude of normal noise, in standard deviations
 _SIGNED = ("offset", "gravity", "ripple", "position")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Posterior:
-    """An estimate's knowledge of a joint's parameters."""
+    """Knowledge about a joint's parameters."""
 
-    known: Known  # information as wide as the intervals are
+    known: Known  # information that corresponds to the width of the intervals
     values: Array
-    # The user's bounds by name; None where there is none.
+    # The user's bounds by name; None without bounds.
     bounds: Mapping[str, tuple[float | None, float | None]] = field(default_factory=dict)
     # Size of a parameter of either sign, e.g. the torque for an offset.
     scale: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The free parameters."""
+        """Names of the free parameters."""
         return self.known.names
 
     def joints(self, count: int, seed: int = 0) -> tuple[dict[str, float], ...]:
-        """Return values of joints that the recordings leave possible; the first are the estimate's.
+        """Return values of joints that are possible after the recordings. The first are the estimate's values.
 
-        A joint is drawn from the distribution of all parameters together, nearer to the estimate where it
-        would leave a bound.
+        A joint is drawn from the joint distribution of all parameters. If it would leave a bound, it is moved
+        toward the estimate.
         """
         width, lower, upper = self._box()
         strength, vectors = np.linalg.eigh(self.known.information * np.outer(width, width))
-        # Not determined at all is drawn as badly determined: a joint ten times the estimate is another joint.
+        # An undetermined parameter is drawn as a badly determined one: ten times the estimate is another joint.
         lengths = 1.0 / np.sqrt(np.maximum(strength, 1.0))
         drawn = np.random.default_rng(seed).standard_normal((max(count - 1, 0), len(self.names)))
         found = [dict(zip(self.names, self.values.tolist(), strict=True))]
@@ -65,7 +65,7 @@ class Posterior:
         return tuple(found)
 
     def _box(self) -> tuple[Array, Array, Array]:
-        """The widest standard deviation that is drawn, and the bounds of what is drawn."""
+        """Return the largest standard deviation for drawing, and the bounds of the drawn values."""
         scale = np.array([self.scale.get(name, 0.0) for name in self.names])
         size = np.maximum(np.abs(self.values), scale)
         size = np.where(size > 0.0, size, 1.0)
@@ -82,14 +82,14 @@ class Posterior:
 
 
 def posterior_of(estimate: Estimate) -> Posterior:
-    """Return an estimate's knowledge of the parameters that another motion can improve, as uncertain as its intervals.
+    """Return the knowledge about the parameters that another motion can improve, with the intervals' uncertainty.
 
-    An offset that no motion divides from the friction of the two directions is fixed, and so is a value at its bound,
-    except unseen friction at low speed: the next motion is to show it.
+    An offset that no motion separates from the friction of the two directions is fixed. A value at its bound
+    is fixed too, except unseen friction at low speed, which the next motion must show.
     """
     assumed, fixed = unseen_friction(estimate)
     fixed |= {each.offset for each in undivided(estimate.free)}
-    # A recording's own parameter, "coulomb[0]", will not be that of the next one.
+    # A recording's own parameter, such as "coulomb[0]", is not valid for the next recording.
     own = {name for name in estimate.free if "[" in name}
     own |= {key for term in estimate.joint.model.resolved.terms.each for key in term.keys}
     names = tuple(
@@ -111,7 +111,7 @@ def posterior_of(estimate: Estimate) -> Posterior:
 
 
 def _own_inertia(estimate: Estimate) -> float:
-    """The mean inertia of the own terms; no design has their signals [kg·m² or kg]."""
+    """Return the mean inertia of the own terms [kg·m² or kg]. A design does not have their signals."""
     terms = estimate.joint.model.resolved.terms.each
     means = estimate.settings.get("mean_inertia", {})
     return sum(
@@ -125,8 +125,8 @@ def _own_inertia(estimate: Estimate) -> float:
 def _information(
     estimate: Estimate, names: tuple[str, ...], fixed: set[str], unknown: set[str]
 ) -> Array:
-    """Information of these parameters, as wide as their intervals: at the fixed values, for any of the unknown ones."""
-    wider = half_widths(estimate, without="symmetry") / NORMAL  # which no motion tells
+    """Return the information of these parameters at the fixed values, or at any of the unknown ones."""
+    wider = half_widths(estimate, without="symmetry") / NORMAL  # no motion shows this part
     whole = _of_chance(estimate) / np.outer(wider, wider)
     free = estimate.free
     kept = [free.index(name) for name in names if name in free and name not in unknown]
@@ -142,7 +142,7 @@ def _information(
 
 
 def _of_chance(estimate: Estimate) -> Array:
-    """The estimate's information; of one that was saved without it, what the finite part of its covariance tells."""
+    """Return the estimate's information. If it was saved without it, use the finite part of its covariance."""
     if estimate.information is not None:
         return estimate.information
     finite = np.flatnonzero(np.isfinite(np.diag(estimate.covariance)))
@@ -155,12 +155,12 @@ def _of_chance(estimate: Estimate) -> Array:
 
 
 def sensors_of(estimate: Estimate) -> _core.Sensors | None:
-    """Return the sensors as the residuals show them: a torque sensor's noise [N·m]; None without a sensor."""
+    """Return the sensors that the residuals indicate: a torque sensor's noise [N·m]; None without a sensor."""
     gain, windows = estimate.parameters.get("sensor_gain"), estimate.windows
     usable = estimate.residuals.samples * (1.0 - estimate.residuals.left_out)
     if gain is None or usable < 1.0:
         return None
-    # White noise grows with the root of time; the median leaves out what happens at a reversal.
+    # White noise grows with the root of time. The median excludes the peaks at reversals.
     period = float(np.sum(windows.duration)) / usable
     shares = np.abs(windows.residual) / np.sqrt(windows.duration * period)
     noise = float(np.median(shares)) / _MEDIAN
@@ -170,9 +170,9 @@ def sensors_of(estimate: Estimate) -> _core.Sensors | None:
 
 
 def joint_of(estimate: Estimate, posterior: Posterior, facts: Joint | None) -> Joint:
-    """Return the joint of a design: the estimate's values, free where another motion can improve them.
+    """Return the joint of a design: the estimate's values, free if another motion can improve them.
 
-    `facts` is a joint with facts that the identified one lacks: a link, limits.
+    `facts` is a joint with data that the identified joint lacks: a link, limits.
     """
     if facts is not None:
         require_kind("joint", facts, Joint)
@@ -186,7 +186,7 @@ def joint_of(estimate: Estimate, posterior: Posterior, facts: Joint | None) -> J
     table = dict(base.parameters)
     values = dict(zip(posterior.names, posterior.values.tolist(), strict=True))
     for name, parameter in own.parameters.items():
-        if parameter.value is None:  # of another model
+        if parameter.value is None:  # a parameter of another model
             continue
         known = table.get(name, parameter)
         table[name] = Parameter(
@@ -199,6 +199,6 @@ def joint_of(estimate: Estimate, posterior: Posterior, facts: Joint | None) -> J
     for term in own.model.resolved.terms.each:
         for key in term.keys:
             table.pop(key, None)
-    # Own torques are left out, own inertias are in the inertia: no signal of theirs is simulated.
+    # Own torques are omitted and own inertias are part of the inertia, because their signals are not simulated.
     model = own.model.replace(terms={}) if own.model.resolved.terms else own.model
     return base.replace(parameters=table, model=model, torque_offset=own.torque_offset)

@@ -1,4 +1,4 @@
-"""The joints that a motion is designed for."""
+"""The joints for which a motion is designed."""
 
 from __future__ import annotations
 
@@ -15,17 +15,17 @@ from jointid.joint.joint import Joint
 Range = tuple[float, float]
 Prior = Mapping[str, Range] | Sequence[Mapping[str, float]] | None
 
-_AROUND = 0.3  # of a value without bounds, to both sides
-_SMALL = 0.1  # of its range: an error of a smaller value counts in this
+_AROUND = 0.3  # share of a value without bounds, on both sides
+_SMALL = 0.1  # share of its range: a smaller value's error is relative to this
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Ranges:
-    """The believed range of each free parameter."""
+    """The assumed range of each free parameter."""
 
-    nominal: Mapping[str, float]  # the joint in the middle
+    nominal: Mapping[str, float]  # values of the joint in the middle
     ranges: Mapping[str, Range]
-    # Joints that the user lists; empty: the ranges give them.
+    # Values of joints listed by the user; empty: the ranges give the joints.
     drawn: tuple[Mapping[str, float], ...] = ()
 
     def scale(self, name: str, value: float) -> float:
@@ -45,7 +45,7 @@ class Ranges:
         ]
 
     def joints(self, count: int, seed: int) -> list[dict[str, float]]:
-        """Return values of `count` joints: the nominal one, then a Latin hypercube, at the middles of its shares."""
+        """Return values of `count` joints: the nominal joint, then the cell centers of a Latin hypercube."""
         if self.drawn:
             return [dict(each) for each in self.drawn[: max(1, count)]]
         others = max(0, count - 1)
@@ -59,7 +59,7 @@ class Ranges:
 
 
 def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
-    """Return the believed ranges of the free parameters `names`; refuse those without a range, and name them all."""
+    """Return the ranges of the free parameters `names`. Refuse parameters without a range, and list all of them."""
     if prior is not None and (not isinstance(prior, Mapping | Sequence) or isinstance(prior, str)):
         raise InputError(
             "a range by parameter, or values of joints, are expected", argument="prior", value=prior
@@ -86,7 +86,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
             value = None
         elif bounds[0] is not None and bounds[1] is not None:
             ranges[name] = (bounds[0], bounds[1])
-        elif value:  # 30 % around 0 is no range
+        elif value:  # 30 % of 0 is not a range
             around = sorted((value * (1.0 - _AROUND), value * (1.0 + _AROUND)))
             ranges[name] = (
                 around[0] if bounds[0] is None else max(around[0], bounds[0]),
@@ -113,7 +113,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
 
 
 def with_room(joint: Joint, ranges: Mapping[str, Range]) -> Joint:
-    """Return the joint with bounds that contain these ranges, which may exceed the joint's own bounds."""
+    """Return the joint with bounds that contain these ranges, even if they exceed the joint's own bounds."""
     table = dict(joint.parameters)
     for name, (low, high) in ranges.items():
         own = table.get(name)

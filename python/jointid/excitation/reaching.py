@@ -1,4 +1,4 @@
-"""The largest values that joints reach in a motion, and by how much the worst joint exceeds a limit."""
+"""Largest values that joints reach in a motion, and the worst excess over a limit."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from jointid.simulation.peaks import Peaks
 from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
-_CUT = 0.9999  # of the drive's limit: a torque that was cut there
-_UNLIMITED = 20.0  # times the limit: with this much torque, the simulation shows what a joint needs
+_CUT = 0.9999  # share of the drive's limit at which a torque counts as cut
+_UNLIMITED = 20.0  # times the limit: a torque that shows how much a joint needs
 _UNITS = {
     "position": ("rad", "m"),
     "velocity": ("rad/s", "m/s"),
@@ -32,27 +32,27 @@ _NAMES = {
 
 @dataclass
 class Reached:
-    """The values that joints reach, their shares of the limits, and the joints that reach most."""
+    """The values that joints reach, their shares of the limits, and the joints with the largest values."""
 
     situation: Situation
     lowest: float = np.inf  # position [rad]
     highest: float = -np.inf
-    velocity: float = 0.0  # largest magnitude, as of torque and sensor
+    velocity: float = 0.0  # largest magnitude, also for torque and sensor
     torque: float = 0.0
     sensor: float = 0.0
-    # Values of the joint that goes farthest, by the limit's name.
+    # Values of the joint that reaches most, by the limit's name.
     farthest: dict[str, Mapping[str, float]] = field(default_factory=dict)
 
     def add(
         self, joints: Sequence[Mapping[str, float]], recordings: Sequence[SimulatedRecording]
     ) -> None:
-        """Count in some joints, by their values and their recordings."""
+        """Add some joints, by their values and their recordings."""
         period = self.situation.control_period
         low, high = self.situation.limits.position
         middle = 0.5 * (low + high)
         for values, recording in zip(joints, recordings, strict=True):
             true = recording.truth.signals
-            # Between samples it goes on by at most this.
+            # Largest further movement between samples.
             beyond = 0.125 * period * period * float(np.abs(true["acceleration"]).max())
             lowest = float(true["position"].min()) - beyond
             highest = float(true["position"].max()) + beyond
@@ -69,7 +69,7 @@ class Reached:
                 )
 
     def shares(self, trajectory: Trajectory) -> dict[str, float]:
-        """Return the share of each limit, by its name; above 1 it is exceeded."""
+        """Return the used share of each limit, by its name; above 1 it is exceeded."""
         limits = self.situation.limits
         low, high = limits.position
         shares = {
@@ -80,13 +80,13 @@ class Reached:
             shares["acceleration"] = self.peaks(trajectory).acceleration / limits.acceleration
         if limits.sensor_range is not None:
             shares["sensor_range"] = self.sensor / limits.sensor_range
-        # The drive cuts what is beyond its limit: a motion that needs all of it is not followed.
+        # The drive cuts a torque beyond its limit, so the joint does not follow a motion that needs all of it.
         if self.torque >= _CUT * self.situation.torque:
             shares["torque"] = 1.02
         return shares
 
     def peaks(self, trajectory: Trajectory) -> Peaks:
-        """Return what is reached, with the acceleration of the reference."""
+        """Return the reached values, with the acceleration of the reference."""
         time = np.arange(0.0, trajectory.duration, self.situation.control_period)
         acceleration = trajectory.sample(time)[2]
         known = np.isfinite(self.lowest)
@@ -99,7 +99,7 @@ class Reached:
         )
 
     def _aside(self, middle: float) -> float:
-        """How far from the middle of the window joints go; -inf before any was counted."""
+        """Return the largest distance of a joint from the middle of the window; -inf before any was added."""
         return max(self.highest - middle, middle - self.lowest)
 
     def _largest(
@@ -117,7 +117,7 @@ class Reached:
 
 
 def exceeded(situation: Situation, trajectory: Trajectory, reached: Reached) -> str:
-    """Return one sentence of the limit that is exceeded most: by how much, and by which joint."""
+    """Return one sentence about the limit that is exceeded most, with the excess and the joint."""
     shares = reached.shares(trajectory)
     name = max(shares, key=lambda each: shares[each])
     joint = reached.farthest.get(name, {})
@@ -165,7 +165,7 @@ def described(joint: Mapping[str, float]) -> str:
 
 
 def _needed(situation: Situation, trajectory: Trajectory, joint: Mapping[str, float]) -> float:
-    """Return the torque that a joint would need from a stronger drive; 0 if it is not known."""
+    """Return the torque that a joint would need from a stronger drive; 0 if it is unknown."""
     stronger = replace(situation.limits, torque=_UNLIMITED * situation.torque)
     try:
         batch = simulate_batch(

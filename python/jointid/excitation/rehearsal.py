@@ -1,4 +1,4 @@
-"""Errors in simulated recordings: of the motion, the controller, the noise, and the identification itself."""
+"""Errors in simulated recordings, caused by the motion, the controller, the noise and the identification."""
 
 from __future__ import annotations
 
@@ -17,8 +17,8 @@ from jointid.simulation.trajectory import Trajectory
 
 Array = NDArray[np.float64]
 
-_TOGETHER = 16  # recordings that are simulated at once
-_APART = 0.005  # of each value: how far the joints lie apart
+_TOGETHER = 16  # recordings that are simulated together
+_APART = 0.005  # relative spread of the joints' values
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +26,7 @@ class Rehearsal:
     """Errors of identifications from simulated recordings of one motion."""
 
     names: tuple[str, ...]
-    errors: Array  # identified less true, shape (recordings, p)
+    errors: Array  # identified minus true value, shape (recordings, p)
 
     def rms(self) -> dict[str, float]:
         """Return the root mean square of each parameter's error."""
@@ -51,9 +51,9 @@ def rehearse(
     threads: int = 0,
     observe: Callable[[int], object] | None = None,
 ) -> Rehearsal:
-    """Simulate `count` recordings of joints with about these values, and identify each.
+    """Simulate `count` recordings of joints near these values, and identify each.
 
-    `first` is the seed of the first recording's noise; `observe` is called with how many recordings are done.
+    `first` is the seed of the first recording's noise. `observe` is called with the number of finished recordings.
     """
     names = situation.request.names
     errors = np.empty((count, len(names)))

@@ -1,4 +1,4 @@
-"""The free parameters of an identification, as the columns of its torque balance."""
+"""Free parameters of an identification, as the columns of its torque balance."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Request:
     """The parameters that an identification leaves free, and those that a motion is designed for."""
 
     names: tuple[str, ...]  # the free parameters
-    wanted: tuple[str, ...]  # of the names, those that the motion is designed for
+    wanted: tuple[str, ...]  # subset of the names for which the motion is designed
     terms: tuple[str, ...]  # keys of the balance's terms
     gear_ratio: float
 
@@ -31,7 +31,7 @@ class Request:
         found: dict[str, _core.BalanceColumn] = {}
         for key in self.terms:
             term = _core.term(key)
-            # A load friction's shape is its coefficient.
+            # The shape of a load friction is its coefficient.
             own = () if term.needs_load else term.shapes
             shapes = [float(values[name]) for name in own]
             frequency = _order(key) * (abs(self.gear_ratio) if key.startswith("ripple") else 1.0)
@@ -57,7 +57,7 @@ def request_of(joint: Joint, wanted: Sequence[str] | None) -> Request:
     prepared = prepare((_template(joint),), joint, Settings.of({"shift": {}, "min_speed": 0.0}))
     domain = prepared.domain
     names = tuple(name for name in domain.names if not domain.fixed(name))
-    # No motion divides an offset from the friction of the two directions: it is taken as it is.
+    # No motion separates an offset from the friction of the two directions, so the offset is fixed.
     groups = undivided(names)
     together = {name for group in groups for name in group.change}
     names = tuple(name for name in names if name not in {group.offset for group in groups})
@@ -87,7 +87,7 @@ def request_of(joint: Joint, wanted: Sequence[str] | None) -> Request:
 
 
 def _order(key: str) -> float:
-    """Return the order of a harmonic's key, such as 2 of "ripple_sin_2"; 1 of others."""
+    """Return the order of a harmonic's key, such as 2 for "ripple_sin_2"; 1 for others."""
     try:
         return float(key.rpartition("_")[2])
     except ValueError:
@@ -95,7 +95,7 @@ def _order(key: str) -> float:
 
 
 def _template(joint: Joint) -> Recording:
-    """A motion of which only the terms of its balance matter."""
+    """Return a motion that is used only for the terms of its balance."""
     time = np.arange(4000) * 1e-3
     position = np.sin(2.0 * np.pi * 0.5 * time) + 0.2 * np.sin(2.0 * np.pi * 1.3 * time)
     velocity = np.gradient(position, time)

@@ -1,4 +1,4 @@
-"""The drive torque that friction of a simulated joint needs, by the core's table of terms."""
+"""Drive torque that overcomes a simulated joint's friction, from the core's table of terms."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from jointid import _core
 
 @functools.cache
 def _rows() -> dict[str, _core.Term]:
-    """Return a row of each basis that a simulated joint may have."""
+    """Return one row for each basis that a simulated joint may have."""
     return {term.basis: term for term in _core.terms() if term.friction and term.side == 0}
 
 
 def largest_viscous(joint: _core.SimulatedJoint) -> float:
-    """Return friction per speed, of the direction that has more of it."""
+    """Return the friction per speed, for the direction with more of it."""
     linear = [(one, other) for basis, one, other, _ in joint.friction if basis == "linear"]
     return max(sum(one for one, _ in linear), sum(other for _, other in linear))
 
 
 def largest_other(joint: _core.SimulatedJoint, speed: float) -> float:
-    """Return the other friction, at rest or at a speed, of the direction that has more of it [N·m]."""
+    """Return the other friction at rest or at a speed, for the direction with more of it [N·m]."""
     sums = [0.0, 0.0]
     for basis, *sides, shapes in joint.friction:
         if basis == "linear":
@@ -35,7 +35,7 @@ def largest_other(joint: _core.SimulatedJoint, speed: float) -> float:
 
 
 def step_at_reversal(joint: _core.SimulatedJoint) -> float:
-    """Return by how much friction changes where the velocity changes its sign [N·m]."""
+    """Return the change of friction when the velocity changes its sign [N·m]."""
     return sum(_rows()[basis].at_rest * (one + other) for basis, one, other, _ in joint.friction)
 
 

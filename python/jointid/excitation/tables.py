@@ -18,11 +18,11 @@ _LIMITS = {
 }
 _TITLES = {"acceleration": "acceleration of the reference", "sensor_range": "torque at the sensor"}
 _VALUES = 9  # values in an answer
-_REACHED = 0.98  # a limit of which so much is used is reached
+_REACHED = 0.98  # share from which a limit counts as reached
 
 
 def head(design: DesignFields) -> list[str]:
-    """The titles of the columns."""
+    """Return the titles of the columns."""
     known = any(each.before is not None for each in design.parameters.values())
     named = ["parameter", "value", *(["error before"] if known else [])]
     named += ["expected error", "share", "at worst"]
@@ -30,7 +30,7 @@ def head(design: DesignFields) -> list[str]:
 
 
 def rows(design: DesignFields) -> list[list[str]]:
-    """One row per parameter: value, errors before and expected, as a share, the worst, the thesis's, unit."""
+    """Return one row per parameter: value, errors before and expected, relative, worst, the thesis's, unit."""
     found, titles = [], head(design)
     for each in design.parameters.values():
         row = [each.name, f"{each.value:.6g}"]
@@ -45,7 +45,7 @@ def rows(design: DesignFields) -> list[list[str]]:
 
 
 def limits_used(design: DesignFields) -> list[str]:
-    """One sentence per limit: the values reached."""
+    """Return one sentence per limit with the reached values."""
     peaks, side = design.peaks, design.joint.kind == "prismatic"
     low, high = design.limits.position
     reached = {
@@ -141,7 +141,7 @@ def _remarks(design: DesignFields) -> list[str]:
 
 
 def judged_with(design: DesignFields) -> str:
-    """Return how many joints and motions were tried, and what counted."""
+    """Return the numbers of joints and motions tried, and the criterion."""
     joints = f"{design.joints} joint{'' if design.joints == 1 else 's'}"
     return (
         f"judged with {joints} drawn from the prior, {design.evaluations} motions tried, criterion "
@@ -150,7 +150,7 @@ def judged_with(design: DesignFields) -> str:
 
 
 def improved(design: DesignFields) -> list[str]:
-    """Return what was weakest before, and by how much this motion makes it better."""
+    """Return the weakest parameter before, and its improvement with this motion."""
     shares = {
         name: each.before * each.relative / each.stderr
         for name, each in design.parameters.items()

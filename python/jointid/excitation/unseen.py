@@ -1,4 +1,4 @@
-"""Friction at low speed that the recordings do not show, and the values that a next motion is designed for."""
+"""Low-speed friction that the recordings do not show, and its values in the design of a next motion."""
 
 from __future__ import annotations
 
@@ -11,18 +11,19 @@ from jointid.estimate.estimate import Estimate
 from jointid.estimate.intervals import NORMAL
 from jointid.estimate.statistics import ParameterEstimate
 
-_EXCESS = 0.2  # of Coulomb friction: the largest assumed static excess
-_NEGLIGIBLE = 0.02  # of Coulomb friction: a smaller one is absent
-_FADED = 1.0 / 30.0  # of the top speed: where it fades
-_INSIGNIFICANT = 0.5  # of its value: a standard error beyond it
+_EXCESS = 0.2  # share of Coulomb friction: the largest assumed static excess
+_NEGLIGIBLE = 0.02  # share of Coulomb friction: a smaller excess is absent
+_FADED = 1.0 / 30.0  # share of the top speed at which it fades
+_INSIGNIFICANT = 0.5  # share of its value: limit of the standard error
 
 
 def unseen_friction(estimate: Estimate) -> tuple[dict[str, float], set[str]]:
-    """Return assumed values of friction at low speed, and the parameters of friction that is certainly absent.
+    """Return assumed values of low-speed friction, and the parameters of friction that is certainly absent.
 
-    Where a bound holds a static excess or it is not significant, its estimate is no value to design a motion for.
-    The assumed excess is as large as the interval allows, at most a fifth of the Coulomb friction, and fades at a
-    thirtieth of the top speed. An excess that the interval keeps below 2 % of the Coulomb friction is absent.
+    If a bound limits the static excess or the excess is not significant, its estimate is not used. The
+    assumed excess is as large as the interval allows, at most a fifth of the Coulomb friction. It fades at a
+    thirtieth of the top speed. An excess is absent if the interval keeps it below 2 % of the Coulomb
+    friction.
     """
     found = estimate.parameters
     terms = [_core.term(key) for key in estimate.settings["terms"]]
@@ -59,7 +60,7 @@ def _is_fading(term: _core.Term) -> bool:
 
 
 def interval_error(p: ParameterEstimate) -> float:
-    """One standard error, as wide as the interval; 0 without one."""
+    """Return one standard error that corresponds to the interval's width; 0 without an interval."""
     return 0.0 if p.interval is None else 0.5 * (p.interval[1] - p.interval[0]) / NORMAL
 
 
@@ -68,7 +69,7 @@ def _is_lost(p: ParameterEstimate) -> bool:
 
 
 def _inside(estimate: Estimate, name: str, value: float) -> float:
-    """A value inside the bounds that the joint states."""
+    """Return the value, limited to the bounds in the joint."""
     known = estimate.joint.parameters.get(name)
     if known is not None:
         value = max(value, -math.inf if known.min is None else known.min)

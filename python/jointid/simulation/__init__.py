@@ -1,1 +1,1 @@
-"""Simulation: a joint in closed loop, its sensors, controllers and desired motions."""
+"""Simulation of a joint in closed loop, with its sensors, controllers and desired motions."""

@@ -1,4 +1,4 @@
-"""Checks of a simulation's arguments; single values are repeated to one list length."""
+"""Checks of a simulation's arguments. Single values are repeated to one list length."""
 
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any, get_args
@@ -87,7 +87,7 @@ def positive(what: str, value: Any) -> float:
 
 
 def whole_multiple(what: str, value: Any, period: float) -> int:
-    """Return how many control periods an argument is, or raise an error."""
+    """Return the number of control periods in an argument, or raise an error."""
     ratio = positive(what, value) / period
     if round(ratio) < 1 or abs(ratio - round(ratio)) > 1e-6 * ratio:
         raise InputError(

@@ -23,7 +23,7 @@ from jointid.simulation.simulated_recording import SimulatedRecording
 from jointid.simulation.trajectory import Trajectory
 
 _SUBSTEPS = 2  # integration steps in a control period, by default
-_MOST_PERIODS = 1e9  # control periods of a simulation, as in the core
+_MOST_PERIODS = 1e9  # largest number of control periods of a simulation, as in the core
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,7 +35,7 @@ class SimulatedBatch:
     error : ndarray, shape (n,)
         Root mean square of the true tracking error after the settling time [rad].
     peak_error : ndarray, shape (n,)
-        Its largest magnitude [rad].
+        Largest magnitude of that error [rad].
     saturations : ndarray, shape (n,)
         Number of control periods in which the torque limit cut the command.
     recordings : tuple of SimulatedRecording
@@ -76,18 +76,18 @@ def simulate_batch(
 ) -> SimulatedBatch:
     """Simulate many joints, controllers or seeds along one trajectory, side by side.
 
-    Each has the same bits as `simulate` alone.
+    Each result is bit-identical to that of `simulate`.
 
     Parameters
     ----------
     joints, controllers, seeds
-        One for all, or a sequence; all sequences have the same length.
+        One value for all, or a sequence. All sequences have the same length.
     settling : float, optional
         Time at the start that the tracking error excludes [s]. Default: a sixth of the duration.
     recordings : bool
-        Whether to keep the signals, too. Default False.
+        Whether to keep the signals too. Default False.
     threads : int
-        0 (default): all.
+        Number of threads. Default 0: all processors.
     trajectory, duration, control_period, sample_period, integration_step, sensors, payload, \
 bristle, position, velocity, name
         As in `simulate`.
@@ -121,7 +121,7 @@ bristle, position, velocity, name
     every = 1 if sample_period is None else whole_multiple("sample_period", sample_period, period)
     length = trajectory.duration if duration is None else positive("duration", duration)
     if length > _MOST_PERIODS * period:
-        # The argument that is further from what is usual.
+        # The message names the argument that is further from its usual value.
         name, value = ("control_period", period) if length <= 1e6 else ("duration", length)
         raise InputError(
             f"{length:g} s would be {length / period:.3g} control periods of {period:g} s; "
@@ -177,7 +177,7 @@ def setup_of(
     bristle: Bristle | None,
     scenario: _core.Scenario,
 ) -> tuple[_core.Setup, dict[str, float]]:
-    """Return one run as the core takes it, and the true parameters."""
+    """Return one run in the core's form, and the true parameters."""
     values = Values(joint)
     plant = simulated_joint(joint, values, payload, bristle)
     setup = _core.Setup(
@@ -211,7 +211,7 @@ def _recording(
     return SimulatedRecording(
         time=time,
         position=signals["position"],
-        # What a controller estimates on line lags; a log is differentiated centrally instead.
+        # A controller's online estimate lags. The recording's signal is differentiated centrally instead.
         velocity=signals["velocity"] if scenario.sensors.velocity == "exact" else None,
         torque=torque,
         sensor=signals["reading"] if joint.sensor else None,

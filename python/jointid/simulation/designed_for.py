@@ -1,4 +1,4 @@
-"""What a motion was designed for, and how another bench differs from it."""
+"""The bench for which a motion was designed, and differences from another bench."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from jointid.joint.link import Link
 from jointid.simulation.arguments import Controller, law_name
 from jointid.simulation.trajectory import Trajectory
 
-_SAME = 0.01  # of a number: printed values are rounded, and a per cent moves no joint otherwise
-_SHOWN = 4  # differences that are said; the others are counted
+_SAME = 0.01  # relative difference that is ignored: printed values are rounded
+_SHOWN = 4  # number of differences shown; the others are counted
 _FACTS = ("kind", "gear_ratio", "torque_constant", "known_inertia", "sensor", "model")
-_OF_FEEDBACK = ("sensor_gain", "sensor_offset")  # a controller without it does not use them
+_OF_FEEDBACK = ("sensor_gain", "sensor_offset")  # a controller without feedback does not use them
 _NAMES = {"known_inertia": "inertia"}
 
 
@@ -29,7 +29,7 @@ class DesignedFor:
     joint: Joint  # the nominal one
     controller: Controller
     control_period: float  # [s]
-    # Ranges of the parameters from which joints were drawn that keep the limits; empty: not known.
+    # Ranges of the parameters of joints that keep the limits; empty: unknown.
     believed: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
 
     def warning(
@@ -54,7 +54,7 @@ class DesignedFor:
         )
 
     def _joints(self, joint: Joint | None) -> Iterator[str]:
-        """In what a joint differs: its facts, its link, and values outside the believed ranges."""
+        """Yield the differences of a joint: its facts, its link, and values outside the assumed ranges."""
         if joint is None:
             return
         for name in _FACTS:
@@ -76,7 +76,7 @@ class DesignedFor:
                 yield f"{name} from {low:.4g} to {high:.4g} (here {value:.4g})"
 
     def _laws(self, controller: Controller) -> Iterator[str]:
-        """In what a controller differs: its law, or what it assumes and its gains."""
+        """Yield the differences of a controller: its law, or its assumptions and gains."""
         if type(controller) is not type(self.controller):
             yield _said("the law", law_name(self.controller), law_name(controller))
             return

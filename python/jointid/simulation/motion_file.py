@@ -1,4 +1,4 @@
-"""Motions in files: a table `[trajectory]`, written by a design or by hand."""
+"""Files with motions: a table `[trajectory]`, written by a design or by hand."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from jointid.simulation.setting_tables import read_controller
 from jointid.simulation.trajectory import Trajectory
 
 SCHEMA = 1
-"""Of a design's file; increased when a reader of the earlier format would misread the new one."""
+"""Schema of a design's file. It increases when a reader of the earlier format would misread the new one."""
 
 _SINES = "sines"
 _FORMS = (_SINES, "thesis", "sine", "multisine", "sigmoid", "step", "trapezoid")
 _MOST_SINES = 10_000
 _LISTS = ("amplitude", "frequency", "phase")
-# What a trajectory and a magnitude may be; the trajectory's own checks say more.
+# Types of a trajectory and of a magnitude; the trajectory checks its values.
 _VALUE, _SIZE = Number(), Number(low=0.0)
-_DURATION = Number(low=1e-3, high=1e6)  # s
+_DURATION = Number(low=1e-3, high=1e6)  # [s]
 _PEAKS = Record(
     {
         "position": ListOf(_VALUE, 2, 2),
@@ -37,8 +37,8 @@ _PEAKS = Record(
     },
     {"sensor_torque": _SIZE},
 )
-_PERIOD = Number(low=1e-6, high=1.0)  # s
-# A table [design] says that a design wrote the file: then it names the joint and the controller, too.
+_PERIOD = Number(low=1e-6, high=1.0)  # [s]
+# A table [design] shows that a design wrote the file. Then the file has the joint and the controller, too.
 _ABOUT = Record({"control_period": _PERIOD}, other=Plain())
 _DESIGNED = Record(
     {"design": _ABOUT, "joint": Plain(), "controller": Plain()},
@@ -56,7 +56,7 @@ COMMENTS = {
     "trajectory.fade": "s, in which the sines grow at the start and fade at the end",
     "trajectory.duration": "s",
 }
-"""What a file says behind the keys of a motion."""
+"""Comments in a file after the keys of a motion."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -64,15 +64,15 @@ class Motion:
     """The content of a motion's file."""
 
     trajectory: Trajectory
-    peaks: Peaks | None = None  # what the joints of the design reach; None: not in the file
-    designed_for: DesignedFor | None = None  # None of a motion that was written by hand
+    peaks: Peaks | None = None  # values that the design's joints reach; None: not in the file
+    designed_for: DesignedFor | None = None  # None for a motion that was written by hand
 
 
 def load_motion(path: str | Path) -> Motion:
-    """Return the motion of a file, such as `Design.save` writes; a table `[trajectory]` is enough.
+    """Return the motion in a file, such as `Design.save` writes. A table `[trajectory]` is enough.
 
-    Its `form` is a class method of `Trajectory`, and the other keys are its arguments; angles may be
-    texts such as "60deg".
+    Its `form` is a class method of `Trajectory`, and the other keys are its arguments. Angles may be texts
+    such as "60deg".
     """
     place = require_path("path", path)
     try:
@@ -82,8 +82,8 @@ def load_motion(path: str | Path) -> Motion:
 
 
 def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion:
-    """Return the motion of a file's tables; `source` is the file's name, for later messages."""
-    if "trajectory" in document:  # else it is another file, such as a joint's
+    """Return the motion in a file's tables. `source` is the file's name, for later messages."""
+    if "trajectory" in document:  # otherwise it is another file, such as a joint's
         check_schema(document)
     tables = _FILE.read(dict(document), "")
     peaks = tables.get("peaks")
@@ -96,7 +96,7 @@ def motion_of(document: Mapping[str, Any], source: str = "the motion") -> Motion
 
 
 def check_schema(document: Mapping[str, Any]) -> None:
-    """Refuse the file of a later jointid; one that was written by hand states no schema."""
+    """Refuse the file of a later jointid. A file that was written by hand has no schema."""
     schema = document.get("schema")
     if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
         raise InputError(
@@ -146,7 +146,7 @@ def _designed_for(tables: Mapping[str, Any], trajectory: Trajectory, source: str
 
 
 def _trajectory(table: Any) -> Trajectory:
-    """The trajectory of a table: its form's class method with the other keys."""
+    """Return the trajectory of a table: call the form's class method with the other keys."""
     given = {key: in_radians(value) for key, value in _TRAJECTORY.read(table, "trajectory").items()}
     form = given.pop("form")
     make: Callable[..., Trajectory] = getattr(Trajectory, form)

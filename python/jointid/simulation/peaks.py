@@ -1,4 +1,4 @@
-"""The largest values that joints reach in a motion."""
+"""Largest values that joints reach in a motion."""
 
 from __future__ import annotations
 
@@ -12,27 +12,27 @@ from jointid.joint.checks import finite_number, not_negative, set_numbers
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Peaks:
-    """The largest values that any of several simulated joints reaches in one motion.
+    """Largest values that several simulated joints reach in one motion.
 
-    For a prismatic joint in m, m/s, m/s² and N.
+    For a prismatic joint the units are m, m/s, m/s² and N.
 
     Parameters
     ----------
     position : tuple of float
-        Lowest and highest [rad].
+        Lowest and highest position [rad].
     velocity : float
-        Largest magnitude [rad/s].
+        Largest magnitude of the velocity [rad/s].
     acceleration : float
-        Largest magnitude of the reference [rad/s²].
+        Largest magnitude of the reference's acceleration [rad/s²].
     torque : float
-        Largest magnitude of the drive at the output [N·m].
+        Largest magnitude of the drive torque at the joint [N·m].
     sensor_torque : float, optional
         Largest magnitude at the joint's torque sensor [N·m]. Default: no sensor.
 
     Raises
     ------
     InputError
-        A value that is not finite, or a magnitude below 0.
+        A value is not finite, or a magnitude is below 0.
     """
 
     position: tuple[float, float]
@@ -55,5 +55,5 @@ class Peaks:
         set_numbers(self, "peaks", others, not_negative)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the values by name, of JSON's types."""
+        """Return the values by name, in JSON types."""
         return {**asdict(self), "position": list(self.position)}

@@ -1,4 +1,4 @@
-"""A joint, its parameters' values and its payload, as the core simulates them."""
+"""A joint, its parameters' values and its payload, in the core's form for a simulation."""
 
 import math
 from collections.abc import Sequence
@@ -23,9 +23,9 @@ class Bristle:
     Parameters
     ----------
     stiffness : float
-        sigma_0 [N·m/rad].
+        Stiffness sigma_0 [N·m/rad].
     damping : float
-        sigma_1 [N·m·s/rad]. Default 0.
+        Damping sigma_1 [N·m·s/rad]. Default 0.
 
     Examples
     --------
@@ -42,7 +42,7 @@ class Bristle:
 
 
 class Values:
-    """The values of a joint's parameters; `used` has those that were read, by name."""
+    """The values of a joint's parameters. `used` has the values that were read, by name."""
 
     def __init__(self, joint: Joint) -> None:
         self._joint = joint
@@ -58,7 +58,7 @@ class Values:
         return value
 
     def need(self, name: str) -> float:
-        """Return a parameter's value; refuse a parameter without one."""
+        """Return a parameter's value. Refuse a parameter without a value."""
         value = self.get(name)
         if value is None:
             raise InputError(
@@ -78,7 +78,7 @@ class Values:
         return self.need(sides[0]), self.need(sides[1])
 
     def friction(self) -> list[tuple[str, float, float, Sequence[float]]]:
-        """Return the friction that depends on the speed alone: basis, coefficients of both directions, shapes."""
+        """Return the friction that depends only on the speed: basis, coefficients of both directions, shapes."""
         found: dict[tuple[str, tuple[float, ...]], list[float]] = {}
         for term in self.terms:
             if not term.friction or term.needs_load:
@@ -102,7 +102,7 @@ class Values:
 def simulated_joint(
     joint: Joint, values: Values, payload: Link | float, bristle: Bristle | None
 ) -> _core.SimulatedJoint:
-    """Return the core's joint; refuse a model that cannot be simulated, and a joint without a needed value."""
+    """Return the core's joint. Refuse a model that cannot be simulated, and a joint that lacks a value."""
     require_simulated(joint, values.terms)
     revolute = joint.kind == "revolute"
     inertia, link_inertia = _inertias(joint, values)
@@ -154,7 +154,7 @@ def simulated_joint(
         weights=weights,
         harmonics=harmonics,
     )
-    # The sensor's gain and offset are read by the caller, known gravity is a fact of the link.
+    # The caller reads the sensor's gain and offset. Known gravity is part of the link's data.
     require_used(
         [term for term in values.terms if term.option not in ("sensor", "gravity")], values.used
     )
@@ -173,9 +173,9 @@ def torque_limit(joint: Joint) -> float | None:
 def control_estimates(joint: Joint) -> dict[str, Any]:
     """Return the parameters that a model-based controller assumes, from a joint's values.
 
-    Use it as ``jid.AdaptiveRobust(**jid.control_estimates(joint))``. Friction that differs between
-    the directions is averaged. Gravity, a constant offset, ripple and harmonics are not compensated:
-    the controller's feedback corrects them.
+    Use it as ``jid.AdaptiveRobust(**jid.control_estimates(joint))``. Friction that differs between the
+    directions is averaged. Gravity, a constant offset, ripple and harmonics are not compensated. The
+    controller's feedback corrects them.
 
     Parameters
     ----------
@@ -192,7 +192,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     ------
     InputError
         A value is missing, or the model has friction that no controller compensates: the exponent of
-        "stribeck_general", load friction.
+        "stribeck_general", or load friction.
 
     Examples
     --------
@@ -206,7 +206,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
     estimates: dict[str, Any] = {"inertia": drive if joint.sensor else drive + link}
     for name in ("coulomb", "static", "viscous"):
         estimates[name] = sum(values.both(name)) / 2.0
-    # 0 is written out: a controller must not keep a value from before.
+    # 0 is written explicitly: a controller must not keep an earlier value.
     fades = any("stribeck" in term.shapes for term in values.terms)
     estimates["stribeck"] = values.need("stribeck") if fades else 0.0
     for name in ("sensor_gain", "sensor_offset"):
@@ -218,7 +218,7 @@ def control_estimates(joint: Joint) -> dict[str, Any]:
 
 
 def _inertias(joint: Joint, values: Values) -> tuple[float, float]:
-    """Inertia of the drive, and of the link behind the sensor."""
+    """Return the inertia of the drive, and of the link behind the sensor."""
     link = joint.link_inertia
     identified = values.get("inertia")
     if identified is not None:

@@ -1,4 +1,4 @@
-"""A closed loop with all settings except the seed, for many simulations."""
+"""Settings of a closed loop without the seed, for many simulations."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from jointid.simulation.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Scenario:
-    """Joint, controller, trajectory and sensors: a simulation without its seed.
+    """Joint, controller, trajectory and sensors: all settings of a simulation without its seed.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ class Scenario:
     Raises
     ------
     InputError
-        Joint, controller, trajectory or sensors of the wrong type.
+        Joint, controller, trajectory or sensors have the wrong type.
 
     Examples
     --------
@@ -76,7 +76,7 @@ class Scenario:
         for name, kinds in known.items():
             if not isinstance(getattr(self, name), kinds):
                 expected = (
-                    "a Sensors value"  # its name is a plural
+                    "a Sensors value"  # plural noun
                     if name == "sensors"
                     else f"{'one of' if len(kinds) > 1 else 'a'} "
                     + ", ".join(kind.__name__ for kind in kinds)
@@ -93,18 +93,18 @@ class Scenario:
         recordings: bool = True,
         threads: int = 0,
     ) -> SimulatedBatch:
-        """Simulate once for each seed or controller, with the same bits as `simulate`.
+        """Simulate once for each seed or controller. Results are bit-identical to those of `simulate`.
 
         Parameters
         ----------
         seeds : int or sequence of int
             Seeds of the sensors' noise. Default 0.
         controllers : optional
-            Controllers instead of the scenario's own: one, or as many as seeds.
+            Controllers that replace the scenario's own: one, or one per seed.
         recordings : bool
             Whether to keep the signals. Default True.
         threads : int
-            0 (default): all.
+            Number of threads. Default 0: all processors.
 
         Raises
         ------
@@ -130,7 +130,7 @@ class Scenario:
         )
 
     def options(self) -> list[str]:
-        """Names that `changed` takes; ``truth.NAME`` is a true parameter of the joint."""
+        """Return the names that `changed` takes; ``truth.NAME`` is a true parameter of the joint."""
         own = [item.name for item in fields(self)]
         for part in ("sensors", "controller"):
             own += [f"{part}.{name}" for name in getattr(self, part).asdict()]
@@ -139,12 +139,12 @@ class Scenario:
     def changed(self, changes: Mapping[str, Any]) -> Self:
         """Return the scenario with other fields, ``sensors.FIELD``, ``controller.FIELD`` or ``truth.PARAMETER``.
 
-        Whole fields change first, then the fields inside them.
+        Whole fields change first, and then the fields inside them.
 
         Raises
         ------
         InputError
-            An unknown name, or a value that cannot be used.
+            A name is unknown, or a value is invalid.
         """
         known = self.options()
         for name in changes:

@@ -1,4 +1,4 @@
-"""Controllers and sensors as tables of a file of ours: their settings by name."""
+"""Controllers and sensors as tables in a file: their settings by name."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from jointid.simulation.arguments import LAWS, Controller, law_name
 
 
 def controller_table(controller: Controller) -> dict[str, Any]:
-    """Return a controller's law and settings, of JSON's types."""
+    """Return a controller's law and settings, in JSON types."""
     return {"law": law_name(controller), **_settings(controller)}
 
 
 def sensors_table(sensors: _core.Sensors) -> dict[str, Any]:
-    """Return the settings of sensors, of JSON's types."""
+    """Return the settings of sensors, in JSON types."""
     return _settings(sensors)
 
 
@@ -36,7 +36,7 @@ def read_sensors(table: Any, place: str) -> _core.Sensors:
 
 
 def plain(value: Any) -> Any:
-    """Return a number that is not finite as the text that a schema reads; anything else unchanged."""
+    """Return a number that is not finite as the text that a schema reads. Other values are unchanged."""
     return str(value) if isinstance(value, float) and not math.isfinite(value) else value
 
 
@@ -54,7 +54,7 @@ def _made(make: Callable[..., Any], table: Mapping[str, Any], place: str) -> Any
 
 
 def _kind(usual: Any) -> Kind:
-    """What may stand in the place of a default."""
+    """Return the type of value that may replace a default."""
     if isinstance(usual, bool):
         return Flag()
     if isinstance(usual, int):

@@ -1,4 +1,4 @@
-"""A simulated recording: the sensors' signals and the true ones."""
+"""A simulated recording: measured and true signals."""
 
 import functools
 from collections.abc import Iterator, Mapping
@@ -20,7 +20,7 @@ class Truth(Mapping[str, Any]):
     Parameters
     ----------
     parameters : mapping of str to float
-        By name [SI].
+        Values by name [SI].
     signals : mapping of str to ndarray, shape (n,)
         `position` [rad], `velocity` [rad/s], `acceleration` [rad/s²], `friction`, `link_torque`
         and `motor_torque` [N·m], at the recording's samples. `friction` is the friction torque of the

@@ -29,33 +29,33 @@ def simulate(
 ) -> SimulatedRecording:
     """Simulate a joint that a controller moves along a trajectory.
 
-    Below the breakaway torque the joint does not move at all. The command is held over each control
-    period. The same arguments give the same bits.
+    Below the breakaway torque the joint does not move. The command is held over each control period. The same
+    arguments give bit-identical results.
 
     Parameters
     ----------
     joint : Joint
-        A joint with a value for each parameter of its model: see `Joint.with_parameters`. With a sensor
-        and ``gravity="none"`` its link is behind the sensor; a link without inertia is a point mass.
+        A joint with a value for each parameter of its model; see `Joint.with_parameters`. With a sensor and
+        ``gravity="none"`` its link is behind the sensor. A link without inertia is a point mass.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
     trajectory : Trajectory
-        The desired motion; for `OpenLoop` the torque.
+        The desired motion; for `OpenLoop` the desired torque.
     duration : float, optional
-        [s]. Default: the trajectory's.
+        Duration of the simulation [s]. Default: the trajectory's.
     control_period : float
         Time between commands [s]. Default 0.001.
     sample_period : float, optional
-        Time between recorded samples [s], a whole number of control periods. Default: one. The recorded
-        torque is the mean of the commands until the next sample.
+        Time between recorded samples [s], a whole number of control periods. Default: one period. The
+        recorded torque is the mean of the commands until the next sample.
     integration_step : float, optional
-        [s]; the control period is a whole number of steps. Default: half the control period.
+        Integration step [s]. The control period is a whole number of steps. Default: half the control period.
     sensors : Sensors, optional
         Default: exact signals.
     payload : Link or float
-        A payload in addition to the joint's link, behind the sensor; a number is a constant torque
-        [N·m] against positive motion. Default 0.
+        A payload in addition to the joint's link, behind the sensor. A number is a constant torque [N·m]
+        against positive motion. Default 0.
     bristle : Bristle, optional
-        Makes friction dynamic (Dahl, LuGre). Default: static.
+        Dynamic friction (Dahl, LuGre). Default: static friction.
     position, velocity : float, optional
         Start values [rad], [rad/s]. Default: the trajectory's position, at rest.
     seed : int
@@ -66,17 +66,15 @@ def simulate(
     Returns
     -------
     SimulatedRecording
-        The measured signals, the held torque and the reference; `truth` has the true parameters,
-        `truth.signals` the true signals. Without a sensor of exact velocity, the velocity is derived
-        from the position; ``truth.signals["control_velocity"]`` is the velocity that the controller
-        used. ``metadata["saturations"]`` counts the control periods in which the torque limit cut the
-        command.
+        The measured signals, the held torque and the reference. `truth` has the true parameters, and
+        `truth.signals` the true signals. Without a sensor of exact velocity, the velocity is derived from the
+        position. ``truth.signals["control_velocity"]`` is the velocity that the controller used.
+        ``metadata["saturations"]`` counts the control periods in which the torque limit cut the command.
 
     Raises
     ------
     InputError
-        An argument that cannot be used, a term of the model that a simulation does not have, or an
-        unstable loop.
+        An argument is invalid, a simulation does not have a term of the model, or the loop is unstable.
     KeyboardInterrupt
         Ctrl-C, within 0.1 s.
 

@@ -1,4 +1,4 @@
-"""A simulated joint that is moved step by step from outside, e.g. by an emulated drive."""
+"""A simulated joint that another program moves step by step, e.g. an emulated drive."""
 
 from jointid import _core
 from jointid.joint.joint import Joint
@@ -18,9 +18,9 @@ def stepped_joint(
     velocity: float = 0.0,
     seed: int = 0,
 ) -> _core.SteppedJoint:
-    """Return a joint to step, made as in `simulate`, at rest unless a velocity [rad/s] is given.
+    """Return a joint to step, made as in `simulate`. It is at rest unless `velocity` [rad/s] is set.
 
-    `period` is the time between observations [s], `integration_step` the longest step [s].
+    `period` is the time between observations [s], and `integration_step` is the longest step [s].
     """
     values = Values(joint)
     return _core.SteppedJoint(

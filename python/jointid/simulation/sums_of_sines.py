@@ -1,15 +1,15 @@
-"""How far sums of sines go."""
+"""Largest values of sums of sines."""
 
 import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
 
-_AT_ONCE = 1_000_000  # samples of all sines, of which a few arrays are made
+_AT_ONCE = 1_000_000  # samples of all sines in one array
 
 
 def peak_of_sines(rate: FloatArray, phase: FloatArray, duration: float, count: int) -> float:
-    """Return how far a sum of sines goes from where it starts, in `count` samples from 0 to `duration` [s]."""
+    """Return a sum's largest deviation from its start, in `count` samples from 0 to `duration` [s]."""
     step, part = duration / (count - 1), max(1, _AT_ONCE // len(rate))
     first, largest = np.sin(phase).sum(), 0.0
     for start in range(0, count, part):

@@ -1,4 +1,4 @@
-"""The terms of a joint's model, and whether a simulation or a controller can use them."""
+"""Terms of a joint's model, and checks whether a simulation or a controller can use them."""
 
 from collections.abc import Collection, Sequence
 from typing import Any
@@ -19,10 +19,10 @@ _OFF: dict[str, Any] = {
 
 
 def terms_of(joint: Joint) -> tuple[_core.Term, ...]:
-    """Return the terms of a joint's torque balance, in the core's order; a family is one entry."""
+    """Return the terms of a joint's torque balance, in the core's order. A family is one entry."""
     model = joint.model.resolved
     friction = _core.model_terms(model.name, asymmetric=model.asymmetric)
-    # Switches of the joint, not of its model; a model's field switches on the terms that name it.
+    # Switches of the joint. A model's field switches on the terms that name it.
     present = {
         "": True,
         "gravity": model.gravity != "none",
@@ -62,7 +62,7 @@ def require_compensated(joint: Joint, terms: Sequence[_core.Term]) -> None:
 
 
 def require_used(terms: Sequence[_core.Term], used: Collection[str]) -> None:
-    """Stop where a term's capability is declared in the core, but its value was not read here."""
+    """Raise if the core declares a term as usable, but its value was not read here."""
     for term in terms:
         names = () if term.family else (term.name, *term.shapes)
         for name in names:
@@ -77,7 +77,7 @@ def _named(term: _core.Term) -> str:
 def _refusal(
     joint: Joint, term: _core.Term, reason: str, usable: Collection[str], function: str
 ) -> InputError:
-    """Return the error, with another friction model or the term's option switched off as remedy."""
+    """Return the error. Its remedy is another friction model, or the term's option switched off."""
     if term.option != "name":
         if term.option not in _OFF:
             return InputError(reason, argument=term.option, value=True)

@@ -25,15 +25,15 @@ _MAKE: dict[str, Callable[..., _core.Trajectory]] = {
 }
 
 _PLACES = ("distance", "offset")
-_FARTHEST = 1e6  # rad, m or N·m; beyond, errors of a simulation have no finite square
+_FARTHEST = 1e6  # [rad], [m] or [N·m]; beyond, errors of a simulation have no finite square
 _MOST_SINES = 5e7  # samples of all sines, to find the peak of a multisine
 
 
 @dataclass(frozen=True, repr=False)
 class Trajectory:
-    """A desired motion over time; its class methods make one.
+    """A desired motion over time. Its class methods create one.
 
-    For open-loop control the values are torques [N·m] instead of angles.
+    For open-loop control, the values are torques [N·m] instead of angles.
 
     Parameters
     ----------
@@ -55,11 +55,11 @@ class Trajectory:
         Parameters
         ----------
         amplitude : float
-            [rad]. Default 20°.
+            Amplitude [rad]. Default 20°.
         cycle : float
             Duration of one cycle [s]. Default 6.
         duration : float
-            [s]. Default 12.
+            Duration [s]. Default 12.
         """
         rate = 2.0 * math.pi / _positive("cycle", cycle)
         size = _extent("amplitude", amplitude) / 1.3
@@ -74,11 +74,11 @@ class Trajectory:
         Parameters
         ----------
         amplitude, offset : float
-            [rad]
+            Amplitude and center [rad].
         frequency : float
-            [Hz]
+            Frequency [Hz].
         duration : float
-            [s]
+            Duration [s].
         """
         rate = 2.0 * math.pi * _positive("frequency", frequency)
         return cls._sines((_extent("amplitude", amplitude),), (rate,), (0.0,), offset, duration)
@@ -107,7 +107,7 @@ class Trajectory:
         offset : float
             Start position [rad]. Default 0.
         duration : float
-            [s]
+            Duration [s].
         """
         if not isinstance(count, int) or isinstance(count, bool) or not 1 <= count <= 10_000:
             raise InputError(
@@ -133,7 +133,7 @@ class Trajectory:
                 argument="Trajectory.duration",
                 value=float(duration),
             )
-        # Sampled finely enough that the peak is found to a few thousandths.
+        # The sampling is fine enough to find the peak to a few thousandths.
         peak = peak_of_sines(rate, phase, duration, int(20 * high * duration) + 2)
         size = _extent("amplitude", amplitude) / peak
         start = offset - size * float(np.sin(phase).sum())
@@ -157,18 +157,18 @@ class Trajectory:
         Parameters
         ----------
         amplitude : float or sequence of float
-            Amplitude of each sine [rad]; a single number, here or below, is for all of them.
+            Amplitude of each sine [rad]. A single number, here or below, is for all sines.
         frequency : float or sequence of float
-            [rad/s]
+            Angular frequency of each sine [rad/s].
         phase : float or sequence of float
-            [rad]
+            Phase of each sine [rad].
         offset : float
-            [rad]. Default 0.
+            Start and end position [rad]. Default 0.
         fade : float
-            Time over which the sines grow at the start and fade at the end [s], smooth to the second
-            derivative; the motion then starts and ends at rest at `offset`. Default 0: no fading.
+            Time in which the sines grow at the start and fade at the end [s], smooth to the second
+            derivative. The motion then starts and ends at rest at `offset`. Default 0: no fading.
         duration : float
-            [s]
+            Duration [s].
 
         Examples
         --------
@@ -196,9 +196,9 @@ class Trajectory:
         Parameters
         ----------
         distance : float
-            [rad]
+            Distance [rad].
         rise, duration : float
-            [s]
+            Time of the move, and total duration [s].
         """
         return cls._made("sigmoid", distance=distance, rise=rise, duration=duration)
 
@@ -216,13 +216,13 @@ class Trajectory:
         Parameters
         ----------
         distance : float
-            [rad]
+            Distance [rad].
         velocity : float
             Largest velocity [rad/s].
         acceleration : float
-            [rad/s²]
+            Largest acceleration [rad/s²].
         duration : float
-            [s]
+            Duration [s].
         """
         return cls._made(
             "trapezoid",
@@ -239,9 +239,9 @@ class Trajectory:
         Parameters
         ----------
         time : array_like, shape (n,)
-            [s], strictly increasing.
+            Sample times [s], strictly increasing.
         position : array_like, shape (n,)
-            [rad]
+            Positions [rad].
         """
         return cls._made(
             "samples",
@@ -257,12 +257,12 @@ class Trajectory:
 
     @property
     def duration(self) -> float:
-        """The duration [s]."""
+        """Duration [s]."""
         return self.core.duration
 
     @functools.cached_property
     def core(self) -> _core.Trajectory:
-        """The core's object."""
+        """Object of the core."""
         return _MAKE[self.form](**dict(self.arguments))
 
     @overload
@@ -274,12 +274,12 @@ class Trajectory:
     def sample(
         self, time: npt.ArrayLike
     ) -> tuple[FloatArray, FloatArray, FloatArray] | tuple[float, float, float]:
-        """Return position [rad], velocity [rad/s] and acceleration [rad/s²] at some times [s].
+        """Return position [rad], velocity [rad/s] and acceleration [rad/s²] at times [s].
 
         Parameters
         ----------
         time : array_like of shape (n,), or float
-            [s]
+            Times [s].
 
         Returns
         -------
@@ -288,7 +288,7 @@ class Trajectory:
         Raises
         ------
         InputError
-            Not a number or an array of numbers.
+            The argument is not a number or an array of numbers.
 
         Examples
         --------
@@ -333,7 +333,7 @@ class Trajectory:
             if not isinstance(value, tuple):
                 arguments[name] = (_extent if name in _PLACES else _number)(name, value)
         trajectory = cls(form, tuple(arguments.items()))
-        _ = trajectory.core  # wrong arguments raise here, not at first use
+        _ = trajectory.core  # invalid arguments raise here, not at first use
         return trajectory
 
     def __repr__(self) -> str:

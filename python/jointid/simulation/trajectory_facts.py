@@ -1,4 +1,4 @@
-"""How a trajectory shows itself: a line at the prompt, a table in a notebook."""
+"""Short descriptions of a trajectory: a line at the prompt, a table in a notebook."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 from jointid import _core
 from jointid.base.html import Html, element, table
 
-_INSTANTS = 2001  # samples from which the extremes are taken
+_INSTANTS = 2001  # samples that give the extremes
 
 
 def line_of(form: str, trajectory: _core.Trajectory) -> str:
@@ -20,7 +20,7 @@ def line_of(form: str, trajectory: _core.Trajectory) -> str:
 
 
 def html_facts(form: str, trajectory: _core.Trajectory) -> Html:
-    """Return the trajectory's facts as a table; units are those of a revolute joint."""
+    """Return the trajectory's facts as a table. Units are those of a revolute joint."""
     (low, high), speed, acceleration = _extremes(trajectory)
     rows: list[list[Html | str]] = [
         ["form", form],

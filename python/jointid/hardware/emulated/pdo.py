@@ -122,9 +122,7 @@ class Pdo:
         if value & _EXTENDED or any(value & 0x7FF in reserved for reserved in _RESERVED):
             raise AccessError(OUT_OF_RANGE)
         if not (self.cob | value) & OFF and (self.cob ^ value) & 0x3FFFFFFF:
-            raise AccessError(
-                WRONG_STATE
-            )  # the identifier of a PDO can change only while it is off
+            raise AccessError(WRONG_STATE)  # the identifier changes only while the PDO is off
         self.cob = value
 
     def _set_kind(self, value: int) -> None:
