@@ -1,1 +1,1 @@
-"""Pictures as data, which both the reports and `jid.plot` draw."""
+"""Pictures as data. The reports and `jid.plot` draw them."""

@@ -1,4 +1,4 @@
-"""How well each compared model predicts held-out motion."""
+"""Pictures of the prediction of held-out motion by each compared model."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ if TYPE_CHECKING:
     from jointid.robot.result.comparison_row import ComparedRobotModel
     from jointid.servo.comparison_result import ServoComparison
 
-_DRAWN = 20  # rows; the table has all
+_DRAWN = 20  # number of drawn rows; the table has all
 _PARTS = "A grey point is one held-out part; the stroke is the mean with its standard error."
 
 
 def held_out(comparison: Comparison) -> Picture:
-    """Relative residual of each model on held-out motion."""
+    """Return the relative residual of each model on held-out motion."""
     rows = [_row(row.model, row, row.model == comparison.winner) for row in comparison.rows]
     caption = (
         f"Relative residual of motion that the model was not fitted to: smaller is better. {_PARTS}"
@@ -31,7 +31,7 @@ def held_out(comparison: Comparison) -> Picture:
 
 
 def held_out_robot(comparison: RobotComparison) -> Picture:
-    """Relative residual of each candidate on held-out torque, mean over the robot's joints."""
+    """Return the relative residual of each candidate on held-out torque, as a mean over the robot's joints."""
     rows = [_row(row.name, row, row == comparison.winner) for row in comparison.rows]
     caption = (
         "Relative residual of torque that the candidate was not fitted to, mean over joints: smaller is better. "
@@ -41,7 +41,7 @@ def held_out_robot(comparison: RobotComparison) -> Picture:
 
 
 def held_out_servo(comparison: ServoComparison) -> Picture:
-    """Error of each model's closed loop on held-out runs of a servo."""
+    """Return the error of each model's closed loop on held-out runs of a servo."""
     rows = [
         NamedRow(name=name, value=median, single=errors, chosen=name == comparison.best)
         for name, median, errors in zip(
@@ -81,5 +81,5 @@ def _picture(rows: Sequence[NamedRow], caption: str, what: str, chosen: str) -> 
 
 
 def _first_of(rows: Sequence[NamedRow], what: str) -> str:
-    """What a caption says where not all rows are drawn."""
+    """Return the caption's note if not all rows are drawn."""
     return f" The first {_DRAWN} of {len(rows)} {what}s." if len(rows) > _DRAWN else ""

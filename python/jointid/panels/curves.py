@@ -1,4 +1,4 @@
-"""The friction of a joint over velocity, from the values of its parameters."""
+"""Curve of a joint's friction over velocity, from the values of its parameters."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jointid.panels.marks import Line
 if TYPE_CHECKING:
     from jointid.joint.joint import Joint
 
-_SPEEDS = 300  # of a curve in each direction
+_SPEEDS = 300  # points of a curve in each direction
 
 
 def known_values(joint: Joint) -> dict[str, float]:
@@ -39,7 +39,7 @@ def friction_line(
     forward: bool = False,
     **appearance: Any,
 ) -> Line:
-    """Return the curve of friction, interrupted at rest, where friction takes any value in between.
+    """Return the curve of friction. It is interrupted at rest, where friction can have any value in between.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""A designed motion: its course within its limits, and the time spent at each velocity."""
+"""Pictures of a designed motion: its course within its limits, and the time spent at each velocity."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ _BINS = 40
 
 
 class _Limits(Protocol):
-    """The drawn limits of a design."""
+    """Limits of a design that are drawn."""
 
     @property
     def position(self) -> tuple[float, float]:
-        """Lowest and highest."""
+        """Lowest and highest position."""
 
     @property
     def velocity(self) -> float:
-        """Largest magnitude."""
+        """Largest magnitude of the velocity."""
 
 
 class DesignedMotion(Protocol):
-    """The drawn parts of a design; a protocol, because designs use panels and not the reverse."""
+    """Parts of a design that are drawn. It is a protocol, because designs import panels and not the reverse."""
 
     @property
     def trajectory(self) -> Trajectory:
-        """The commanded motion."""
+        """The desired motion."""
 
     @property
     def duration(self) -> float:
@@ -59,7 +59,7 @@ class DesignedMotion(Protocol):
 
 
 def motion(design: DesignedMotion) -> Picture:
-    """Position and velocity of the reference over time, and their limits."""
+    """Return position and velocity of the reference over time, with their limits."""
     time = np.linspace(0.0, design.duration, _SAMPLES)
     position, velocity, _ = design.trajectory.sample(time)
     slides = design.joint.kind == "prismatic"
@@ -95,7 +95,7 @@ def _within(
     reached: tuple[float, float],
     labelled: bool = True,
 ) -> Panel:
-    """A signal of the reference with its limits, and what the joints reach."""
+    """Return a signal of the reference with its limits and the joints' range."""
     names = ("joints reach", "reference", "limit") if labelled else ("", "", "")
     return Panel(
         across="time [s]",
@@ -111,7 +111,7 @@ def _within(
 
 
 def sampled_velocities(design: DesignedMotion) -> Picture:
-    """How long the joint moves at each velocity, and its friction there; nothing where it does not move."""
+    """Return the time that the joint spends at each velocity, and its friction there; empty if it does not move."""
     time = np.linspace(0.0, design.duration, _SAMPLES)
     velocity = design.trajectory.sample(time)[1]
     peak = float(np.abs(velocity).max())

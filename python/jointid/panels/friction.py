@@ -14,22 +14,22 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
     from jointid.problem.window_table import WindowTable
 
-_SPEEDS = 150  # of the curve in each direction: at most 5 units of the picture apart
+_SPEEDS = 150  # points of the curve in each direction: at most 5 picture units apart
 
 
 def friction_map(estimate: Estimate, windows: WindowTable | None = None) -> Picture:
-    """Friction over velocity: a point for each window, and the identified curve with its 95 % band.
+    """Return friction over velocity: a point for each window, and the identified curve with its 95 % band.
 
     Parameters
     ----------
     estimate : Estimate
     windows : WindowTable, optional
-        Of another recording. Default: those that the estimate was fitted to.
+        Windows of another recording. Default: those that the estimate was fitted to.
     """
     windows = estimate.windows if windows is None else windows
     whole = whole_windows(windows)
     curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max()), _SPEEDS))
-    rest = len(curve.velocity) // 2  # friction takes any value there: two curves
+    rest = len(curve.velocity) // 2  # friction can have any value at rest, so there are two curves
     gap = np.nan
     velocity, torque, lower, upper = (
         np.concatenate([values[:rest], [gap], values[rest:]])

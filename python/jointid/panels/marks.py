@@ -1,4 +1,4 @@
-"""The elements of a picture: lines, points, bands, bars, levels, shades and ranges, on panels."""
+"""Elements of a picture: lines, points, bands, bars, levels, shades and ranges, on panels."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ Array = NDArray[np.float64]
 
 
 class Mark:
-    """One thing that is drawn.
+    """One drawn element.
 
     Attributes
     ----------
     look : str
-        One of the palette's: "measured", "fitted", "second", "third", "fourth", "fifth". Default "fitted".
+        Look from the palette: "measured", "fitted", "second", "third", "fourth", "fifth". Default "fitted".
     label : str
-        For the legend. Default: none.
+        Label in the legend. Default: none.
     """
 
     __slots__ = ()
@@ -33,21 +33,21 @@ class Mark:
             raise ValueError(f"no look '{self.look}' in the palette")
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (), ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Line(Mark):
-    """A line through points in order; a value that is not finite interrupts it.
+    """A line through points in order. A value that is not finite interrupts it.
 
     Attributes
     ----------
     across, up : array_like, shape (n,)
     dashed : bool
-        Default False.
+        Whether the line is dashed. Default False.
     series : bool
-        One of several lines of the same kind, which also differ in their dashes. Default False.
+        Whether it is one of several lines of the same kind, which also differ in their dashes. Default False.
     """
 
     across: ArrayLike
@@ -58,7 +58,7 @@ class Line(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (numbers(self.across),), (numbers(self.up),)
 
 
@@ -77,13 +77,13 @@ class Points(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (numbers(self.across),), (numbers(self.up),)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Band(Mark):
-    """The area between two lines; a value that is not finite interrupts it.
+    """The area between two lines. A value that is not finite interrupts it.
 
     Attributes
     ----------
@@ -97,18 +97,18 @@ class Band(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (numbers(self.across),), (numbers(self.low), numbers(self.high))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Bars(Mark):
-    """Bars that stand on zero, side by side.
+    """Adjacent bars that start at zero.
 
     Attributes
     ----------
     edges : array_like, shape (n + 1,)
-        Increasing.
+        Edges of the bars, increasing.
     up : array_like, shape (n,)
     """
 
@@ -118,13 +118,13 @@ class Bars(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (numbers(self.edges),), (numbers(self.up), np.zeros(1))
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Level(Mark):
-    """A dashed line at one value, all across the panel.
+    """A dashed line at one value, across the whole panel.
 
     Attributes
     ----------
@@ -136,13 +136,13 @@ class Level(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (), (numbers([self.up]),)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Shade(Mark):
-    """Stretches of the axis across, shaded all over the panel's height.
+    """Shaded intervals of the horizontal axis, over the whole height of the panel.
 
     Attributes
     ----------
@@ -155,13 +155,13 @@ class Shade(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (numbers(self.start), numbers(self.stop)), ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Range(Mark):
-    """A stretch of the upright axis, shaded all across the panel.
+    """A shaded interval of the vertical axis, over the whole width of the panel.
 
     Attributes
     ----------
@@ -174,30 +174,30 @@ class Range(Mark):
     label: str = ""
 
     def values(self) -> tuple[Iterable[Array], Iterable[Array]]:
-        """What the two axes must have room for."""
+        """Return the values that the two axes must include."""
         return (), (numbers([self.low, self.high]),)
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Panel:
-    """Two axes and what is drawn on them, the first mark at the bottom.
+    """Two axes and the marks drawn on them. The first mark is at the bottom.
 
     Attributes
     ----------
     marks : tuple of Mark
     across, up : str
-        What the axes show, with the unit in brackets: "velocity [rad/s]".
+        Labels of the axes, with the unit in brackets: "velocity [rad/s]".
     logarithmic, logarithmic_across : bool
-        Of the upright axis, and of the axis across. Default False.
+        Whether the vertical and the horizontal axis are logarithmic. Default False.
     height : int
-        Of the axes, in units of the picture, which is 560 wide. Default 220.
+        Height of the axes, in units of the picture, which is 560 wide. Default 220.
     names : tuple of str
-        Of rows below each other, instead of numbers at the upright axis: marks are drawn at 0 for the first row, -1
-        for the second. Default: none.
+        Names of rows below each other, which replace numbers at the vertical axis. Marks are drawn at 0 for
+        the first row, at -1 for the second. Default: none.
     right : tuple of Mark
-        Drawn last, on an upright axis of their own at the right. Default: no such axis.
+        Marks drawn last, on a second vertical axis at the right. Default: no such axis.
     right_up : str
-        What that axis shows.
+        Label of that axis.
     """
 
     marks: tuple[Mark, ...]
@@ -213,14 +213,14 @@ class Panel:
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Picture:
-    """Panels below each other, with one axis across, and what they show.
+    """Panels below each other with a common horizontal axis, and their caption.
 
     Attributes
     ----------
     caption : str
         One or two sentences that explain the picture.
     panels : tuple of Panel
-        From above.
+        Panels from top to bottom.
     title : str
         Title if a page has several pictures of the same kind, e.g. a joint's name. Default: no title.
     """
@@ -236,8 +236,8 @@ def row_height(rows: int) -> int:
 
 
 def numbers(values: ArrayLike) -> Array:
-    """Return values as an array of numbers, masked ones as gaps."""
-    # Only what has a mask is worth the import of numpy.ma.
+    """Return values as an array of numbers, with masked values as gaps."""
+    # Only a masked array is worth the import of numpy.ma.
     if hasattr(values, "mask") and isinstance(values, np.ma.MaskedArray):
         return np.ma.filled(values.astype(np.float64), np.nan)
     return np.asarray(values, dtype=np.float64)

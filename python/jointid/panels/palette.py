@@ -1,12 +1,12 @@
-"""Colours of pictures, for a light and a dark ground.
+"""Colours of pictures, for a light and a dark background.
 
-The colours are darkened and lightened variants of Okabe and Ito's, which the colour-blind can tell apart.
-Each has a contrast of at least 3:1 against its ground, also where a band lies behind it.
+The colours are darker and lighter variants of Okabe and Ito's, which colour-blind readers can distinguish.
+Each has a contrast of at least 3:1 against its background, also over a band.
 """
 
 from __future__ import annotations
 
-BAND = 0.15  # opacity of a filled area; more would take the contrast from the curves on it
+BAND = 0.15  # opacity of a filled area; a larger one would hide the curves on it
 LIGHT = {
     "ground": "#ffffff",
     "ink": "#222222",
@@ -37,9 +37,9 @@ DARK = {
     "alarm": "#ff8a80",
     "well": "#20252b",
 }
-# The names that a mark may have as its look.
+# The names for a mark's `look`.
 LOOKS = ("measured", "fitted", "second", "third", "fourth", "fifth")
-# Lengths of the dashes and gaps, in widths of the line, that tell the lines of a series apart also without colour.
+# Lengths of dashes and gaps, in line widths. They distinguish the lines of a series also without colour.
 DASHES: dict[str, tuple[float, ...]] = {
     "measured": (),
     "fitted": (6, 2),

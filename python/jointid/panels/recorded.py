@@ -1,4 +1,4 @@
-"""Recorded signals, with unused parts shaded, and the residual over position."""
+"""Pictures of recorded signals, with unused parts shaded, and of the residual over position."""
 
 from __future__ import annotations
 
@@ -20,19 +20,19 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 _SHOWN = ("position", "velocity", "torque", "motor_torque", "current", "sensor", "temperature")
-_HALF = 0.5  # of a window's time: what was left out of it is more than what was used
+_HALF = 0.5  # share of a window's time; a stretch counts as unused if less of it is used
 
 
 def left_out(windows: WindowTable, number: int, time: Array) -> tuple[Array, Array]:
-    """Return where the stretches of a recording begin and end [s] that no window used, or less than half of it.
+    """Return start and end [s] of the stretches of a recording that windows use less than half.
 
     Parameters
     ----------
     windows : WindowTable
     number : int
-        Of the recording.
+        Number of the recording.
     time : ndarray
-        The recording's, [s].
+        Times of the recording [s].
     """
     used = (windows.recording == number) & (
         windows.duration >= _HALF * (windows.stop - windows.start)
@@ -41,13 +41,13 @@ def left_out(windows: WindowTable, number: int, time: Array) -> tuple[Array, Arr
     start, stop = windows.start[used][order], windows.stop[used][order]
     reached = np.maximum.accumulate(np.concatenate([[time[0]], stop]))
     begins, ends = reached, np.concatenate([start, [time[-1]]])
-    # What one sample period separates is no stretch.
+    # A gap of one sample period is not a stretch.
     apart = ends - begins > 1.5 * float(time[-1] - time[0]) / max(len(time) - 1, 1)
     return begins[apart], ends[apart]
 
 
 def signals(recording: Recording, begins: Array, ends: Array) -> Picture:
-    """All signals of a recording over time, with unused parts shaded; see `left_out`."""
+    """Return all signals of a recording over time, with unused parts shaded; see `left_out`."""
     names = [name for name in _SHOWN if getattr(recording, name) is not None]
     panels = []
     for row, name in enumerate(names):
@@ -65,18 +65,18 @@ def signals(recording: Recording, begins: Array, ends: Array) -> Picture:
 def signal_panel(
     runs: Mapping[str, Recording], name: str, *below: Mark, height: int = 220
 ) -> Panel:
-    """One signal of one or several runs over time; they all have it.
+    """Return one signal of one or several runs over time. All runs must have it.
 
     Parameters
     ----------
     runs : mapping of str to Recording
-        By name, for the legend.
+        Runs by name, for the legend.
     name : str
-        Of the signal.
+        Name of the signal.
     *below : Mark
-        What is drawn first.
+        Marks drawn first.
     height : int
-        Default 220.
+        Height of the panel. Default 220.
     """
     several = len(runs) > 1
     lines = (
@@ -99,7 +99,7 @@ def signal_panel(
 
 
 def residual_over_position(estimate: Estimate, recordings: Sequence[Recording]) -> Picture:
-    """Residual over position: it shows gear ripple, gravity and a varying inertia that the model lacks."""
+    """Return the residual over position. It shows gear ripple, gravity and a varying inertia that the model lacks."""
     windows = estimate.windows
     middle = 0.5 * (windows.start + windows.stop)
     position = np.empty_like(middle)

@@ -1,4 +1,4 @@
-"""A robot's joints: the friction of each, and its windows over time."""
+"""Pictures of a robot's joints: the friction of each joint, and its windows over time."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def friction_of_joint(estimate: RobotEstimate, name: str) -> Picture:
-    """Friction over velocity of a robot's joint: measured windows and identified curve."""
+    """Return friction over velocity of a robot's joint: measured windows and identified curve."""
     joint = estimate.joints[name]
     windows = joint.windows
     marks: list[Mark] = [
@@ -41,7 +41,7 @@ def friction_of_joint(estimate: RobotEstimate, name: str) -> Picture:
 
 
 def windows_of_joint(estimate: RobotEstimate, name: str) -> Picture:
-    """Measured and fitted mean torque of a robot's joint over time, above the residual."""
+    """Return measured and fitted mean torque of a robot's joint over time, above the residual."""
     joint = estimate.joints[name]
     windows = joint.windows
     centre = window_centres(windows)
@@ -76,5 +76,5 @@ def windows_of_joint(estimate: RobotEstimate, name: str) -> Picture:
 
 
 def _unit(estimate: RobotEstimate, name: str) -> str:
-    """The unit of a joint's torque or force."""
+    """Return the unit of a joint's torque or force."""
     return "N" if estimate.robot.tree.prismatic[list(estimate.joints).index(name)] else "N·m"

@@ -1,4 +1,4 @@
-"""A servo's run as logged, and as its closed loop is simulated."""
+"""Picture of a servo's run: logged, and simulated in closed loop."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
 
 
 def rolled_out(run: RunRollout) -> Picture:
-    """Logged and simulated position of a run over time, with the mean error in the legend."""
+    """Return logged and simulated position of a run over time, with the mean error in the legend."""
     time = run.time - run.time[0]
     label = f"simulated, {run.shown(run.error):.2f} {run.unit} mean error"
     if run.bistable:
@@ -21,7 +21,7 @@ def rolled_out(run: RunRollout) -> Picture:
         up=f"position [{run.unit}]",
         marks=(
             Line(label="logged", across=time, up=run.shown(run.measured), look="measured"),
-            # Dashed, since a good model lies upon the log.
+            # dashed, because a good model covers the log
             Line(label=label, across=time, up=run.shown(run.position), dashed=True),
         ),
     )

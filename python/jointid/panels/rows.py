@@ -1,4 +1,4 @@
-"""Named rows for a comparison, one below the other: a value with its error, and single values."""
+"""Named rows of a comparison, below each other: a value with its error, and single values."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from jointid.panels.marks import Line, Mark, Panel, Points, numbers, row_height
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class NamedRow:
-    """One row of a picture.
+    """One named row of a picture.
 
     Attributes
     ----------
     name : str
     value : float
-        NaN where there is none.
+        Value; NaN if there is none.
     error : float
-        Half the length of the bar through it. Default: no bar.
+        Half the length of the error bar. Default: no bar.
     single : array_like
-        Values that it is the middle of. Default: none.
+        Single values that `value` summarizes. Default: none.
     chosen : bool
-        Whether it has the colour of the result. Default False.
+        Whether the row has the colour of the result. Default False.
     """
 
     name: str
@@ -49,11 +49,11 @@ def rows_panel(
     ----------
     rows : sequence of NamedRow
     across, what : str
-        What the axis shows, with its unit, and what the rows are.
+        Label of the axis with its unit, and description of the rows.
     labels : tuple of str
-        For the legend: single values, values, and the chosen ones; "" for none.
+        Labels in the legend for single values, values, and the chosen ones; "" for none.
     logarithmic : bool
-        Of the axis across. Default False.
+        Whether the horizontal axis is logarithmic. Default False.
     """
     marks: list[Mark] = []
     single = [numbers(row.single) for row in rows]
@@ -75,7 +75,7 @@ def rows_panel(
         errors = np.array([row.error for _, row in mine])
         up = np.array([-float(k) for k, _ in mine])
         gaps = np.full(len(mine), np.nan)
-        # A short upright stroke at the value: it is seen beside points, and also where there is no error.
+        # A short vertical stroke marks the value: it is visible next to points, and without an error.
         bars = np.column_stack([values - errors, values + errors, gaps]).ravel()
         strokes = np.column_stack([values, values, gaps]).ravel()
         heights = np.column_stack([up - 0.14, up + 0.14, gaps]).ravel()

@@ -1,4 +1,4 @@
-"""The genetic search of an estimate over its generations."""
+"""Picture of an estimate's genetic search over its generations."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def convergence(estimate: Estimate) -> Picture:
-    """Penalty over generations of an estimate that has a `convergence`: best, mean, and the result."""
+    """Return the penalty over generations, for an estimate with `convergence`: best, mean, and the result."""
     history = estimate.convergence
     assert history is not None
     polished = (estimate.settings["ga"] or {}).get("polish") and estimate.settings["method"] == "ga"

@@ -1,4 +1,4 @@
-"""How closely runs followed their reference."""
+"""Pictures of the tracking error of runs."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ _REFERENCE = "true parameters"  # the run with the emulated joint's own values
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class TrackingError:
-    """How closely one run followed its reference.
+    """Tracking error of one run.
 
     Attributes
     ----------
     name : str
-        For the legend; may be empty.
+        Name in the legend; may be empty.
     time : ndarray, shape (n,)
-        From the start of the run [s].
+        Time from the start of the run [s].
     error : ndarray, shape (n,)
         Position minus reference [rad] or [m].
     size : float
-        Its root mean square, in the same unit.
+        Root mean square of the error, in the same unit.
     dashed : bool
-        Whether it may lie upon another. Default False.
+        Whether the line is dashed, because it may cover another one. Default False.
     """
 
     name: str
@@ -44,7 +44,7 @@ class TrackingError:
 
 
 def tracking(result: Commissioning) -> Picture:
-    """First and last run on one axis; the runs between and reference runs on a second axis."""
+    """Return the first and the last run on one axis, and the other runs on a second axis."""
     slides = result.runs[0].recording.kind == "prismatic"
     last = () if result.true_run is None else (result.true_run,)
     ends = result.runs[:1] if len(result.runs) == 1 else (result.runs[0], result.runs[-1])
@@ -63,7 +63,7 @@ def tracking_panel(
     looks: tuple[str, ...] = LOOKS,
     height: int = 220,
 ) -> Panel:
-    """The errors of runs over time, with their root mean square in the legend.
+    """Return the errors of runs over time, with their root mean square in the legend.
 
     Parameters
     ----------
@@ -71,9 +71,9 @@ def tracking_panel(
     slides : bool
         Whether the joint is prismatic.
     looks : tuple of str
-        Of the runs, in turn. Default: all of the palette.
+        Looks of the runs, in turn. Default: all looks of the palette.
     height : int
-        Default 220.
+        Height of the panel. Default 220.
     """
     unit = "mm" if slides else "mrad"
     marks: list[Mark] = [

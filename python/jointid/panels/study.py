@@ -1,4 +1,4 @@
-"""A study: a quantity of its trials over the swept settings."""
+"""Pictures of a study: a quantity of its trials over the swept settings."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-_DRAWN = 20  # rows; the table has all
+_DRAWN = 20  # number of drawn rows; the table has all
 _LINES = ("fitted", "second", "third", "fourth", "fifth")
-_WIDE_RANGE = 20.0  # of positive values, above which an axis is logarithmic
+_WIDE_RANGE = 20.0  # ratio of positive values above which an axis is logarithmic
 
 STATISTICS: dict[str, Callable[[Array], Any]] = {
     "median": np.median,
@@ -31,11 +31,11 @@ STATISTICS: dict[str, Callable[[Array], Any]] = {
     "best": np.min,
     "worst": np.max,
 }
-"""What is drawn of the trials of a cell."""
+"""Statistic of a cell's trials that is drawn."""
 
 
 def study_pictures(study: Study) -> tuple[Picture, ...]:
-    """The largest error of each trial where the truth is known, otherwise the penalty; then the tracking error."""
+    """Return pictures of each trial's largest error (without a truth: its penalty) and of the tracking error."""
     drawn = {"penalty": "The penalty"}
     if np.isfinite(_worst_errors(study)).any():
         drawn = {"error.worst": "The largest relative error of all parameters"}
@@ -63,7 +63,7 @@ def over_setting(
     statistic: str = "median",
     combined: bool = False,
 ) -> Panel:
-    """A quantity over a setting that is a number, as points and lines; otherwise a row for each cell.
+    """Return a quantity over a numeric setting, as points and lines; otherwise one row per cell.
 
     Parameters
     ----------
@@ -71,13 +71,13 @@ def over_setting(
     setting : str
         A swept setting; "" if there is none.
     values : ndarray, shape (rows,)
-        Values of the trials.
+        Values of the quantity for the trials.
     title : str
-        Their quantity and unit.
+        Name and unit of the quantity.
     statistic : str
         A key of `STATISTICS`. Default "median".
     combined : bool
-        Whether cells that differ in other settings only are one. Default False: a line, or a row, for each.
+        Whether to combine cells that differ only in other settings. Default False: a line or a row for each.
     """
     places = [cell.get(setting) for cell in study.cells]
     numeric = all(isinstance(each, int | float) and not isinstance(each, bool) for each in places)
@@ -133,23 +133,23 @@ def _lines(
 
 
 def _trials_of(study: Study, names: list[str], name: str) -> NDArray[np.bool_]:
-    """Which trials are of the cells with a name."""
+    """Return which trials belong to the cells with a name."""
     return np.array([names[row.cell] == name for row in study.rows], dtype=bool)
 
 
 def quantity(study: Study, value: str) -> tuple[Array, str]:
-    """Return a quantity of each trial, and what it is, with its unit.
+    """Return a quantity of each trial, and its name with its unit.
 
     Parameters
     ----------
     study : Study
     value : str
-        A column of numbers; "error.NAME", a parameter's relative error [%]; "error.worst", the largest of them.
+        A numeric column; "error.NAME", a parameter's relative error [%]; "error.worst", the largest error.
 
     Raises
     ------
     InputError
-        No such quantity, or an error without true values.
+        The quantity does not exist, or an error is requested without true values.
     """
     kind, _, name = value.partition(".")
     if kind != "error" or not name:
@@ -171,7 +171,7 @@ def quantity(study: Study, value: str) -> tuple[Array, str]:
 
 
 def _worst_errors(study: Study) -> Array:
-    """Largest relative error of each trial [%]; NaN without a truth."""
+    """Return the largest relative error of each trial [%]; NaN without a truth."""
     worst = []
     for row in study.rows:
         errors = [
@@ -205,7 +205,7 @@ def _title(study: Study, value: str) -> str:
 
 
 def statistic_of(statistic: str, values: Array) -> float:
-    """Return a statistic of the trials that have a value; NaN for none."""
+    """Return a statistic of the trials that have a value; NaN without any."""
     known = values[np.isfinite(values)]
     return float(STATISTICS[statistic](known)) if len(known) else math.nan
 

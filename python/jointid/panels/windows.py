@@ -1,4 +1,4 @@
-"""Measured and fitted windows of an estimate over time, and residuals over time and velocity."""
+"""Pictures of measured and fitted windows over time, and of residuals over velocity."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 
 def window_means(estimate: Estimate) -> Picture:
-    """Measured and fitted mean of each window over time, above the residual."""
+    """Return measured and fitted mean of each window over time, above the residual."""
     windows = estimate.windows
     centre = window_centres(windows)
     signal, unit = fitted_signal(estimate)
@@ -52,7 +52,7 @@ def window_means(estimate: Estimate) -> Picture:
 
 
 def residuals_over_velocity(estimate: Estimate) -> Picture:
-    """Residual over velocity: it shows a form of friction that the model lacks."""
+    """Return the residual over velocity. It shows a form of friction that the model lacks."""
     windows = estimate.windows
     whole = whole_windows(windows)
     panel = Panel(

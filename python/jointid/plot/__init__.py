@@ -1,4 +1,4 @@
-"""Plots of recordings, estimates and studies: one style, units on the axes; all take and return Matplotlib axes."""
+"""Plots of recordings, estimates and studies. All take and return Matplotlib axes with labels and units."""
 
 from jointid.plot.appearance import line_style, style
 from jointid.plot.design import designed_motion

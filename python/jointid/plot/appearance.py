@@ -1,4 +1,4 @@
-"""One style for all plots: curves differ in colour, dash and marker, for print and for colour-blind readers."""
+"""The style of all plots. Curves differ in colour, dash and marker, for print and for colour-blind readers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _STYLE: dict[str, Any] = {
 def style() -> Iterator[None]:
     """Apply the Matplotlib settings of jointid's plots within a `with` block.
 
-    A setting that the user has changed, by a style sheet or in `rcParams`, stays.
+    Settings that the user has changed, by a style sheet or in `rcParams`, are kept.
 
     Examples
     --------
@@ -48,17 +48,17 @@ def style() -> Iterator[None]:
             finally:
                 drawing = is_interactive()
     finally:
-        # A notebook's back end is loaded with the first figure, perhaps here, and turns this on.
+        # A notebook's back end is loaded with the first figure, perhaps here, and changes this setting.
         interactive(drawing)
 
 
 def _left_to_us() -> dict[str, Any]:
-    """Our settings, except those that the user has chosen."""
+    """Return our settings, except those that the user has changed."""
     return {name: ours for name, ours in _STYLE.items() if _chosen(name) is None}
 
 
 def _chosen(setting: str) -> Any:
-    """The user's value of a setting of Matplotlib; None where it is Matplotlib's own."""
+    """Return the user's value of a Matplotlib setting; None if it is Matplotlib's default."""
     import matplotlib
 
     settings: tuple[Any, Any] = (matplotlib.rcParams, matplotlib.rcParamsDefault)
@@ -67,14 +67,14 @@ def _chosen(setting: str) -> Any:
 
 
 def look(style: Mapping[str, Any], **ours: Any) -> dict[str, Any]:
-    """Return the keywords of a curve: the user's, and jointid's for the others.
+    """Return the keywords of a curve: the user's keywords, and ours for the rest.
 
-    Short names count, too: ``lw`` is ``linewidth``.
+    Short names are recognized: ``lw`` is ``linewidth``.
 
     Raises
     ------
     InputError
-        ``axes`` is among them; the argument's name is `ax`.
+        ``axes`` is one of the keywords. The argument's name is `ax`.
     """
     from matplotlib.cbook import normalize_kwargs
     from matplotlib.lines import Line2D
@@ -85,12 +85,12 @@ def look(style: Mapping[str, Any], **ours: Any) -> dict[str, Any]:
 
 
 def axes_or_new(ax: Axes | None) -> Axes:
-    """Return these axes, or for None new ones in jointid's style.
+    """Return these axes, or new axes in our style for None.
 
     Raises
     ------
     InputError
-        Not Matplotlib axes.
+        The argument is not Matplotlib axes.
     """
     from matplotlib.axes import Axes
 
@@ -116,7 +116,7 @@ def line_style(number: int, count: int = 0) -> dict[str, Any]:
     number : int
         Number of the curve, from 0; styles repeat after six.
     count : int
-        Samples of the curve; about twelve of them get a marker. Default 0: no markers.
+        Number of samples of the curve. About twelve of them get a marker. Default 0: no markers.
 
     Returns
     -------
@@ -142,5 +142,5 @@ def line_style(number: int, count: int = 0) -> dict[str, Any]:
 
 
 def line_width() -> float:
-    """Return the user's width of lines, or ours."""
+    """Return the user's line width, or ours."""
     return float(_chosen("lines.linewidth") or _STYLE["lines.linewidth"])

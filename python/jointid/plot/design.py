@@ -24,9 +24,9 @@ def designed_motion(
     Parameters
     ----------
     design : Design
-        From `design` or `load_design`.
+        A design from `design` or `load_design`.
     ax : sequence of three Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the reference, e.g. ``color="black"``.
 
@@ -34,8 +34,8 @@ def designed_motion(
     -------
     tuple of Axes
         Position [rad] or [m] and velocity [rad/s] or [m/s] over time [s], each with its limits and the
-        range that joints reach; share of the time [%] over velocity, with the nominal joint's friction
-        [N·m] or [N] on the right axis.
+        joints' range. Then the share of the time [%] over velocity, with the nominal joint's friction [N·m]
+        or [N] on the right axis.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def designed_motion(
 
 
 def _axes(axes: Sequence[Axes] | None) -> tuple[Axes, Axes, Axes]:
-    """Three axes; new ones one above the other, the first two with one time."""
+    """Return three axes. New axes are one above the other, and the first two share the time."""
     if axes is None:
         from matplotlib import pyplot
 

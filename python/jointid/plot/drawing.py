@@ -1,4 +1,4 @@
-"""A panel drawn into Matplotlib axes: the same marks, labels and legend as in a report."""
+"""Draw a panel into Matplotlib axes, with the same marks, labels and legend as in a report."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ from jointid.plot.appearance import line_style, line_width, look, style
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-_SIZES = ((300, 5.0), (1000, 3.0))  # of points, up to so many; more are smaller
+_SIZES = ((300, 5.0), (1000, 3.0))  # number of points, and size
 _SMALLEST = 2.0
-_MANY = 1000  # points, above which a vector format holds them as an image
+_MANY = 1000  # number of points above which a vector format stores them as an image
 
 
 def draw(
@@ -44,11 +44,12 @@ def draw(
     axes : Axes
     panel : Panel
     keywords : mapping of str to object, optional
-        Keywords of `Axes.plot` for the marks in `styled`, instead of ours.
+        Keywords of `Axes.plot` for the marks in `styled`, which replace ours.
     styled : collection of Mark
-        Lines and points of the panel. A band of the same look takes their colour. Default: none.
+        Lines and points of the panel that get the keywords. A band of the same look takes their colour.
+        Default: none.
     **legend
-        Keywords of `Axes.legend`. Default: at the best place.
+        Keywords of `Axes.legend`. Default: the best place.
     """
     chosen = look(keywords or {})
     recoloured = {mark.look for mark in styled} if "color" in chosen else set()
@@ -119,7 +120,7 @@ def _draw_area(axes: Axes, mark: Mark, keywords: Mapping[str, Any]) -> None:
     elif isinstance(mark, Shade):
         pairs = zip(numbers(mark.start).tolist(), numbers(mark.stop).tolist(), strict=True)
         for number, (start, stop) in enumerate(pairs):
-            label = None if number else keywords["label"]  # one entry of the legend for all
+            label = None if number else keywords["label"]  # one legend entry for all
             axes.axvspan(start, stop, **{**keywords, "label": label})
     else:
         raise NotImplementedError(f"no way to draw {type(mark).__name__}")

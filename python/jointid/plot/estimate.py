@@ -25,10 +25,10 @@ def friction_map(
     Parameters
     ----------
     recording : Recording or None
-        Recording of the points; None: the windows that the estimate was fitted to.
+        Recording of the points. None: the windows that the estimate was fitted to.
     estimate : Estimate
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the identified curve, e.g. ``color="black"``.
 
@@ -40,7 +40,7 @@ def friction_map(
     Raises
     ------
     InputError
-        An argument of the wrong type, or a recording that the estimate cannot predict.
+        An argument has the wrong type, or the estimate cannot predict the recording.
 
     Examples
     --------
@@ -61,7 +61,7 @@ def window_means(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Ax
     ----------
     estimate : Estimate
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the fitted line, e.g. ``color="black"``.
 
@@ -73,7 +73,7 @@ def window_means(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Ax
     Raises
     ------
     InputError
-        Not an estimate.
+        The argument is not an estimate.
     """
     require_kind("estimate", estimate, Estimate)
     means, _ = windows.window_means(estimate).panels
@@ -81,13 +81,13 @@ def window_means(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Ax
 
 
 def residuals(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
-    """Draw the residual (measured minus fitted) of each window over time, as a mean.
+    """Draw the mean residual (measured minus fitted) of each window over time.
 
     Parameters
     ----------
     estimate : Estimate
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the points, e.g. ``color="black"``.
 
@@ -99,7 +99,7 @@ def residuals(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
     Raises
     ------
     InputError
-        Not an estimate.
+        The argument is not an estimate.
     """
     require_kind("estimate", estimate, Estimate)
     _, below = windows.window_means(estimate).panels
@@ -114,7 +114,7 @@ def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axe
     estimate : Estimate
         Result of a genetic search.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the curves of the penalty, e.g. ``color="black"``.
 

@@ -1,4 +1,4 @@
-"""Plots of friction over velocity: models compared, the effect of one parameter, the samples of a recording."""
+"""Plots of friction over velocity: compared models, the effect of a parameter, the samples of a recording."""
 
 from __future__ import annotations
 
@@ -37,9 +37,9 @@ def friction_curves(
     Parameters
     ----------
     joints : mapping of str to Joint or Estimate
-        By label: joints with values for their friction parameters, or estimates.
+        Joints with values for their friction parameters, or estimates, by label.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     peak : float
         Largest speed [rad/s] or [m/s]. Default 1.
     **style
@@ -53,7 +53,7 @@ def friction_curves(
     Raises
     ------
     InputError
-        No joint, or a joint without a value for any friction parameter.
+        There is no joint, or a joint has no value for any friction parameter.
 
     Examples
     --------
@@ -91,11 +91,11 @@ def sensitivity(
     reading: float = 5.0,
     **style: Any,
 ) -> Axes:
-    """Draw the torque at constant speed and sensor reading, and its change with a parameter's error.
+    """Draw the torque at constant speed and constant sensor reading, and its change with a parameter's error.
 
-    The torque is that of the drive in (4-20) without acceleration: friction + gain · reading + offset.
-    A recording contains information about the parameter at speeds where the three curves differ. The plot
-    shows forward motion; backward, friction changes its sign.
+    The torque is the drive's torque in (4-20) without acceleration: friction + gain · reading + offset. A
+    recording contains information about the parameter at speeds where the three curves differ. The plot shows
+    forward motion. In backward motion, friction changes its sign.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def sensitivity(
     parameter : str
         A friction parameter, `sensor_gain` or `sensor_offset`.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     share : float
         Relative change of the parameter. Default 0.1.
     peak : float
@@ -122,7 +122,7 @@ def sensitivity(
     Raises
     ------
     InputError
-        The parameter has no value, or the joint has none for its friction.
+        The parameter has no value, or the joint has no values for its friction.
 
     Examples
     --------
@@ -171,12 +171,12 @@ def torque_over_velocity(
     recording : Recording
         A recording with torque.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     sensed_by : Joint or Estimate, optional
-        Its sensor gain and offset convert the sensor's reading to the link's torque, which is
+        The sensor gain and offset that convert the sensor's reading to the link's torque, which is
         subtracted. Default: nothing is subtracted.
     curve : Joint or Estimate, optional
-        Its friction is drawn over the samples. Default: no curve.
+        Joint or estimate with the friction to draw over the samples. Default: no curve.
     **style
         Keywords of Matplotlib's `Axes.plot` for the samples, e.g. ``color="black"``.
 
@@ -188,7 +188,7 @@ def torque_over_velocity(
     Raises
     ------
     InputError
-        The recording has no torque, or no sensor to subtract; a joint lacks values.
+        The recording has no torque, or no sensor signal to subtract, or a joint lacks values.
     """
     require_kind("recording", recording, Recording)
     if recording.torque is None:

@@ -39,7 +39,7 @@ def tracking_error(
         One run, or several by name, e.g. ``{"before": a, "after": b}``. A simulated run is drawn with
         its true position, not the encoder's.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     settling : float, optional
         Time at the start that the RMS excludes [s]. Default: a sixth of each run.
     **style
@@ -53,7 +53,7 @@ def tracking_error(
     Raises
     ------
     InputError
-        No run, or a run without a reference.
+        There is no run, or a run has no reference.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def tracking_error(
 
 
 def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
-    """Draw one signal of a run, or of several, over time.
+    """Draw one signal of one or several runs over time.
 
     Parameters
     ----------
@@ -79,19 +79,19 @@ def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
     name : str
         "position", "velocity", "torque", "motor_torque", "current", "sensor" or "reference".
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the curves, e.g. ``color="black"``.
 
     Returns
     -------
     Axes
-        Time [s]; the signal in SI units, the sensor's raw reading.
+        Time [s]; the signal in SI units, or the sensor's raw reading.
 
     Raises
     ------
     InputError
-        No run, an unknown signal, or a signal that a run lacks.
+        There is no run, the signal is unknown, or a run lacks it.
     """
     if name not in _SIGNALS:
         raise InputError(f"{alternatives(_SIGNALS)} is expected", argument="name", value=name)
@@ -119,25 +119,25 @@ def trajectory(
     Parameters
     ----------
     wanted : Trajectory
-        Of a revolute joint.
+        Motion of a revolute joint.
     what : {"position", "velocity", "acceleration"}
-        Default "position".
+        The drawn quantity. Default "position".
     ax : Axes, optional
-        Drawn into; several motions in the same axes differ in colour and dash. Default: new axes.
+        Axes to draw into. Several motions in the same axes differ in colour and dash. Default: new axes.
     label : str
-        Entry of the legend. Default: no legend.
+        Entry in the legend. Default: no legend.
     **style
         Keywords of Matplotlib's `Axes.plot` for the curve, e.g. ``color="black"``.
 
     Returns
     -------
     Axes
-        Time [s]; [rad], [rad/s] or [rad/s²].
+        Time [s]; position [rad], velocity [rad/s] or acceleration [rad/s²].
 
     Raises
     ------
     InputError
-        Another value of `what`.
+        `what` has another value.
     """
     if what not in _DERIVATIVES:
         expected = alternatives(tuple(_DERIVATIVES))

@@ -24,7 +24,7 @@ def rolled_out(
     ----------
     result : Rollout
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     run : str or int
         Name or number of the run. Default: the first.
     **style
@@ -38,7 +38,7 @@ def rolled_out(
     Raises
     ------
     InputError
-        No such run.
+        The run does not exist.
 
     Examples
     --------

@@ -21,16 +21,16 @@ def adaptation(
     ax: Axes | None = None,
     **style: Any,
 ) -> Axes:
-    """Draw the crossover and mutation probabilities over the diversity measure (3.2.2).
+    """Draw the crossover and mutation probabilities over the diversity measure (section 3.2.2 of the thesis).
 
     Parameters
     ----------
     options : GaOptions
-        With constant probabilities both lines are constant.
+        Options of the search. Constant probabilities give horizontal lines.
     generations : sequence of Generation
-        Generations of a search with these options; each adds one point to both lines. Default: none.
+        Generations of a search with these options. Each adds one point to both lines. Default: none.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
         Keywords of Matplotlib's `Axes.plot` for the lines, e.g. ``color="black"``.
 

@@ -35,36 +35,36 @@ def sweep(
 ) -> Axes:
     """Draw a quantity over one swept setting as points and a line, or over two settings as a heat map.
 
-    A report instead draws a line for each value of the second setting.
+    A report draws a line for each value of the second setting instead.
 
     Parameters
     ----------
     study : Study
     x, y : str, optional
-        Swept settings. Default: the first two; `y` none if only one is swept or `ax` is given.
-        Trials of the other settings are combined.
+        Swept settings. Default: the first two. `y` is none if only one is swept or `ax` is set. Trials of the
+        other settings are combined.
     value : str
         A column of the study's table (``"penalty"``, a parameter, ``"tracking_after"``, …), or
-        ``"error.NAME"``: a parameter's relative error [%]; ``"error.worst"``: the largest of them.
-        Default ``"penalty"``.
+        ``"error.NAME"``: a parameter's relative error [%], or ``"error.worst"``: the largest error. Default
+        ``"penalty"``.
     statistic : str
-        "median" (default), "mean", "spread", "best" or "worst" of the trials; of an error, its
-        magnitude.
+        Statistic of the trials: "median" (default), "mean", "spread", "best" or "worst". For an error, its
+        magnitude is used.
     ax : Axes, optional
-        Drawn into. Default: new axes.
+        Axes to draw into. Default: new axes.
     **style
-        Keywords of Matplotlib's `Axes.plot` for the line, of `Axes.imshow` for the map, e.g. ``color="black"``.
+        Keywords of Matplotlib's `Axes.plot` for the line or of `Axes.imshow` for the map, e.g. ``color="black"``.
 
     Returns
     -------
     Axes
-        Over one setting: the quantity over the setting; where its values are no numbers, a row for each.
-        Over two: the settings, the quantity as colour and number.
+        Over one setting: the quantity over the setting, or one row per value if the values are not numbers.
+        Over two: the settings on the axes, and the quantity as colour and number.
 
     Raises
     ------
     InputError
-        A setting that was not swept, an unknown quantity or statistic, an error without true values.
+        A setting was not swept, a quantity or statistic is unknown, or an error is requested without true values.
 
     Examples
     --------

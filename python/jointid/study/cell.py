@@ -17,9 +17,9 @@ from jointid.problem.settings import ProblemOptions
 from jointid.simulation.scenario import Scenario
 
 OPTIONS = ("method", "ga", *options_of(ProblemOptions))
-"""Fields of the search, and options that a study passes on: the same for all cells, or swept."""
+"""Search fields and options that a study passes on, the same for all cells or swept."""
 
-_TOO_LARGE = 2**31  # for a whole number of the core
+_TOO_LARGE = 2**31  # limit of the core's integers
 
 Label = str | int | float | bool | None
 
@@ -40,7 +40,7 @@ class Cell:
     values: dict[str, Any]
 
     def scenario(self, base: Scenario) -> Scenario:
-        """Return the scenario with this cell's settings of it."""
+        """Return the scenario with the settings of this cell."""
         return base.changed({n: v for n, v in self.values.items() if not is_option(n)})
 
     def options(self, common: Mapping[str, Any]) -> dict[str, Any]:
@@ -66,7 +66,7 @@ class Cell:
         Raises
         ------
         InputError
-            A value that the search refuses.
+            The search refuses a value.
         """
         ga = self.values.get("ga", base.ga)
         method = self.values.get("method", base.method)
@@ -94,7 +94,7 @@ def _with_settings(options: _core.GaOptions, changes: Mapping[str, Any]) -> _cor
 
 
 def _check_setting(name: str, value: object, present: object) -> None:
-    """Refuse a value whose kind is not that of the present value."""
+    """Refuse a value with a type other than the present value's."""
     if isinstance(present, bool):
         check_flag("grid", name, value)
     elif isinstance(present, str):

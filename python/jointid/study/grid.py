@@ -18,12 +18,12 @@ from jointid.study.cell import OPTIONS, Cell, Label
 
 
 def cells_of(grid: Mapping[str, Any], scenario: Scenario | None) -> tuple[Cell, ...]:
-    """Return all combinations of a grid's values; those of the last name change fastest.
+    """Return all combinations of a grid's values. The values of the last name change fastest.
 
     Raises
     ------
     InputError
-        A name that cannot be swept, no values, or values that a table cannot show.
+        A name cannot be swept, a name has no values, or a table cannot show the values.
     """
     if not isinstance(grid, Mapping):
         raise InputError(

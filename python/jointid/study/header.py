@@ -1,4 +1,4 @@
-"""The header of a study: the first line of its file, with the fingerprint that identifies the study."""
+"""The header of a study: the first line of its file, with the study's fingerprint."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
     ----------
     work : Work
     trials : int
-        Of each cell.
+        Number of trials of each cell.
     truth : mapping of str to float or None
-        True parameters that the call states.
+        True parameters from the call.
 
     Raises
     ------
@@ -67,7 +67,7 @@ def header_of_work(work: Work, trials: int, truth: Mapping[str, float] | None) -
 
 
 def _truth(work: Work, given: Mapping[str, float] | None) -> dict[str, float]:
-    """Return the true parameters: the stated ones, otherwise those that are the same for all recordings."""
+    """Return the true parameters: from the call, otherwise those that are the same for all recordings."""
     if given is not None:
         if not isinstance(given, Mapping):
             raise InputError(

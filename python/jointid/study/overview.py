@@ -1,4 +1,4 @@
-"""Summary of a study for a report page: how often the truth was found, or which parameter differs most."""
+"""Summary of a study for a report page: share of successes, or the parameter that differs most."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.base.result import Overview, Quantity
 from jointid.estimate.wording import percent
 from jointid.study.summary import SHOWN, CellSummary, Summary, cell_name, error_of, varying
 
-_LONGEST = 300  # letters of a setting
+_LONGEST = 300  # characters of a setting
 _FOR_PROGRAMS = ("version", "fingerprint")
 _DEFAULTS = ("None", "False", "Model", "")
 
@@ -45,7 +45,7 @@ def _quantity(cell: CellSummary, name: str) -> Quantity:
 
 
 def _answer(summary: Summary) -> list[str]:
-    """How often the truth was found, where most and least often; without a truth, what moves most."""
+    """Return the share of successes, the best and the worst cell; without a truth, the most variable parameter."""
     cells = [cell for cell in summary.cells if cell.trials]
     if not cells:
         return ["No trial has finished."]
@@ -78,7 +78,7 @@ def _trials(count: int) -> str:
 
 
 def _moves_most(cells: Sequence[CellSummary]) -> str:
-    """Which parameter differs most between the cells, or between the trials of the only one."""
+    """Return the parameter that differs most between the cells, or between the trials of a single cell."""
     moved: dict[str, float] = {}
     for name in {name: None for cell in cells for name in cell.mean}:
         means = [cell.mean[name] for cell in cells if name in cell.mean]
@@ -99,7 +99,7 @@ def _moves_most(cells: Sequence[CellSummary]) -> str:
 
 
 def _settings(settings: Mapping[str, object]) -> tuple[tuple[str, str], ...]:
-    """What all trials have in common, without what was left at its default."""
+    """Return the common settings of all trials, without defaults."""
     rows = []
     for name, value in settings.items():
         text = "" if name in _FOR_PROGRAMS else _setting(value)
@@ -118,6 +118,6 @@ def _setting(value: object) -> str:
     if isinstance(value, list | tuple):
         return "; ".join(filter(None, map(_setting, value)))
     text = "yes" if value in (True, "True") else str(value)
-    # A joint and a search are kept as Python writes them.
+    # A joint and a search are stored as their Python representation.
     text = text.partition(", parameters={")[0].strip("()").replace("'", "")
     return "" if text in _DEFAULTS else text

@@ -19,7 +19,7 @@ from jointid.study.work import Work
 
 
 def _checked(search: Search) -> Search:
-    """Return the search of a sweep; fields that belong to a single run are refused."""
+    """Return the search of a sweep. Refuse fields that belong to a single run."""
     for name in ("callback", "checkpoint", "resume"):
         if getattr(search, name) is not None:
             raise InputError(
@@ -46,12 +46,12 @@ def work_of(
     options : mapping of str to object
         Options of a problem for all cells.
 
-    Others are those of `sweep`.
+    The other parameters are those of `sweep`.
 
     Raises
     ------
     InputError
-        An argument, or a value of the grid, that cannot be used with any recording.
+        An argument or a value of the grid cannot be used with any recording.
     """
     search = _checked(search)
     common = {name: value for name, value in options.items() if name != "terms"}
@@ -85,7 +85,7 @@ def work_of(
         tracking=tracking,
         threads=search.threads,
     )
-    for cell in work.cells:  # errors of the settings themselves are raised before the work
+    for cell in work.cells:  # invalid settings raise here, before the work
         cell.search(search, search.seed, search.threads)
         cell.options(work.common)
     return work

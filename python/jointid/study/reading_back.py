@@ -1,4 +1,4 @@
-"""A study from its JSON."""
+"""Read a study from its JSON text."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from jointid.study.row import Row
 from jointid.study.saved_header import FORMAT, read_header
 from jointid.study.study_file import check_row
 
-_ROWS = ListOf(Unchecked())  # a row has a reader of its own
+_ROWS = ListOf(Unchecked())  # a row has its own reader
 
 
 def read_study(text: str) -> tuple[dict[str, Any], list[Row]]:
-    """Return header and rows of the study that a JSON text holds; see `Study.from_json`."""
+    """Return header and rows of the study in a JSON text; see `Study.from_json`."""
     document = read_json(text)
     if not isinstance(document, dict) or document.get("format") != FORMAT:
         raise InputError(f"this JSON is not a study: its field 'format' is not '{FORMAT}'")
@@ -24,7 +24,7 @@ def read_study(text: str) -> tuple[dict[str, Any], list[Row]]:
         {name: _label(label) for name, label in cell.items()} for cell in header["cells"]
     ]
     rows: dict[tuple[int, int], Row] = {}
-    first: dict[int, Row] = {}  # of each cell that has results
+    first: dict[int, Row] = {}  # first row of each cell with results
     for number, record in enumerate(records):
         try:
             row = Row.of(record)
@@ -36,5 +36,5 @@ def read_study(text: str) -> tuple[dict[str, Any], list[Row]]:
 
 
 def _label(label: Any) -> Any:
-    """Return a label of a cell; JSON has no number that is not finite."""
+    """Return a label of a cell. JSON has no number that is not finite."""
     return float(label) if label in ("inf", "-inf", "nan") else label

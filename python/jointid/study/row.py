@@ -42,22 +42,22 @@ _ROW = Record(
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Row:
-    """The result of one identification; the same bits in any process and on any number of threads.
+    """The result of one identification, bit-identical in any process and with any number of threads.
 
     Attributes
     ----------
     cell, trial : int
-        Index of the combination of settings, and of the repetition.
+        Index of the combination of settings, and index of the repetition.
     seed : int
-        Seed of the search and of a simulation's noise; `identify` with it gives this row.
+        Seed of the search and of a simulation's noise. `identify` with this seed gives this row.
     status : str
         "converged", "stopped", or "refused" if these settings cannot be used here.
     message : str
-        How the search ended, or why the settings are refused.
+        Reason for the end of the search, or for the refusal of the settings.
     penalty : float
         Penalty of the result; NaN if refused.
     evaluations, generations : int
-        Number of each in the search.
+        Numbers of candidates and of generations in the search.
     values, stderr : dict of str to float
         Parameters, and their standard errors if requested [SI].
     tracking : dict of str to float
@@ -83,22 +83,22 @@ class Row:
         return self.cell, self.trial
 
     def asdict(self) -> dict[str, Any]:
-        """Return the fields for a file; numbers keep all their bits."""
+        """Return the fields for a file. Numbers keep all their bits."""
         return asdict(self)
 
     @classmethod
     def of(cls, record: object) -> Row:
-        """Return the row of a record.
+        """Return the row in a record.
 
         Parameters
         ----------
         record : object
-            Of JSON's types; further keys are ignored.
+            Record of JSON types. Unknown keys are ignored.
 
         Raises
         ------
         InputError
-            The record is not that of a row.
+            The record is not a row.
         """
         known = _ROW.read(record, "")
         return cls(**{item.name: known[item.name] for item in fields(cls)})

@@ -1,4 +1,4 @@
-"""Runs the trials of a study; trials with the same recording or penalty share it."""
+"""Run the trials of a study. Trials with the same recording or penalty share it."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ _Found = tuple[Row, Estimate | None]
 
 
 def run_chunk(work: Work, places: Sequence[Place]) -> list[Row]:
-    """Return the rows of some trials; an executor calls this in another process or on another machine."""
+    """Return the rows of some trials. An executor calls this in another process or on another machine."""
     return [row for rows in Runner(work).run(places) for row in rows]
 
 
 class Runner:
-    """Runs trials one group after the other, and keeps the last penalty for the next group.
+    """Run trials group by group, and keep the last penalty for the next group.
 
     Parameters
     ----------
     work : Work
     strict : bool
-        Whether settings that cannot be used raise an error, instead of giving refused rows. Default False.
+        Whether invalid settings raise an error instead of giving refused rows. Default False.
     """
 
     def __init__(self, work: Work, *, strict: bool = False) -> None:
@@ -51,7 +51,7 @@ class Runner:
         Raises
         ------
         InputError
-            Settings that cannot be used, if strict.
+            Settings are invalid, if strict.
         KeyboardInterrupt
             Ctrl-C.
         """
@@ -89,7 +89,7 @@ class Runner:
     def _recordings(
         self, scenario: Scenario, trials: list[int]
     ) -> dict[int, Recording | InputError]:
-        """Return the recording of each trial, or the error where a loop is not stable."""
+        """Return the recording of each trial, or the error of an unstable loop."""
         work = self._work
         seeds = [work.seed + trial for trial in trials]
         try:
@@ -97,7 +97,7 @@ class Runner:
         except InputError as error:
             if len(trials) == 1:
                 return {trials[0]: error}
-            # One of them failed: simulate each by itself to keep the others.
+            # One of them failed: simulate each separately to keep the others.
             alone = [self._recordings(scenario, [trial]) for trial in trials]
             return {trial: made for each in alone for trial, made in each.items()}
         return dict(zip(trials, batch.recordings, strict=True))
@@ -120,9 +120,9 @@ class Runner:
                 for cell, trial in places
             ]
             if self._ready is None or self._ready[0] != key:
-                self._ready = None  # frees the memory of the last one first
+                self._ready = None  # frees the memory of the last penalty first
                 prepared = prepare(recordings, joint, Settings.of(options), threads=work.threads)
-                # A search by projection needs none.
+                # A search by projection needs no penalty.
                 engine: Callable[[], Engine] = functools.cache(
                     functools.partial(Engine.of, prepared.penalty, prepared.domain, work.threads)
                 )
@@ -184,21 +184,21 @@ class Runner:
         return rows
 
     def _error(self, scenario: Scenario, believed: Joint | None, seed: int) -> float:
-        """Return the tracking error of the controller as it is, or with a joint's parameters."""
+        """Return the tracking error of the unchanged controller, or with a joint's parameters."""
         try:
             law = scenario.controller if believed is None else scenario.believing(believed)
         except InputError:  # no controller compensates this friction model
             return math.nan
         try:
             batch = scenario.simulate(seed, controllers=law, recordings=False, threads=1)
-        except InputError:  # a loop that is not stable with these estimates
+        except InputError:  # a loop that is unstable with these estimates
             return math.inf
         return float(batch.error[0])
 
     def _refused(self, place: Place, error: InputError) -> Row:
         if self._strict:
             raise error
-        # Without advice, which depends on the face: a row is read from any of them.
+        # Without advice, which depends on the interface (Python, command line, app): any of them may read a row.
         plain = InputError(
             error.reason, argument=error.argument, value=error.value, place=error.place
         )
@@ -215,7 +215,7 @@ def _outcomes(
     searches: list[Search], prepared: Prepared, engine: Callable[[], Engine]
 ) -> list[Outcome]:
     penalty, domain = prepared.penalty, prepared.domain
-    if searches[0].chosen_method == "separable":  # which has no seed
+    if searches[0].chosen_method == "separable":  # this method has no seed
         return [separable(searches[0], penalty, domain, engine)] * len(searches)
     ready = engine()
     results = _core.minimise_trials(

@@ -1,4 +1,4 @@
-"""Reading the first line of a study's file, with its checks."""
+"""Read and check the first line of a study's file."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from jointid.base.errors import InputError
 from jointid.base.schema import Json, ListOf, Number, Plain, Record, TableOf, Text
 
 FORMAT = "jointid-study"
-KIND = "jointid study"  # in its JSON
+KIND = "jointid study"  # format name in its JSON
 SCHEMA = 1
 EXPECTED = "a file that a sweep wrote is expected"
 
 
-# A label or a setting, which is only shown and compared: of any length, and perhaps not finite.
+# A label or a setting is only shown and compared. It may have any length and be not finite.
 _VALUE = Json(finite=False)
 
 
@@ -53,9 +53,9 @@ def read_header(record: object, before: dict[str, Any] | None) -> dict[str, Any]
     Parameters
     ----------
     record : object
-        Of JSON's types.
+        Record of JSON types.
     before : dict or None
-        An earlier header of the same file, which another number of trials follows.
+        An earlier header of the same file, after which the number of trials changed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""A study's file: JSON lines that grow with the finished trials, and from which a study continues."""
+"""A study's file of JSON lines. It grows with each finished trial, and a study can continue from it."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ _ANOTHER = Action("call", {"output": ...}, text="another file", function="sweep"
 
 
 class StudyFile:
-    """Rows on disk, written as trials finish; the first line identifies the study.
+    """Rows on disk, written as trials finish. The first line identifies the study.
 
     Parameters
     ----------
     path : Path
     header : dict
-        The study that the rows belong to; an existing file is continued only with the same "fingerprint".
+        Header of the study. An existing file is continued only if it has the same "fingerprint".
     resume : bool
-        Whether to continue an existing file; otherwise an existing file is refused.
+        Whether to continue an existing file. Otherwise an existing file is refused.
 
     Raises
     ------
     InputError
-        The file exists, or belongs to another study, or another program writes it, or its folder does not exist.
+        The file exists, belongs to another study or is written by another program, or its folder does not exist.
     """
 
     def __init__(self, path: Path, header: dict[str, Any], *, resume: bool) -> None:
@@ -75,9 +75,9 @@ class StudyFile:
             )
 
     def _begin(self, header: dict[str, Any], resume: bool) -> None:
-        """Read what is there, and write the header where it is not."""
+        """Read the existing rows, and write the header if it is missing."""
         if not resume:
-            self._refuse_rows()  # another program may have written it in the meantime
+            self._refuse_rows()  # another program may have written the file meanwhile
         if self.path.stat().st_size > 0:
             known, self.rows, length = read(self.path)
             if known["fingerprint"] != header["fingerprint"]:
@@ -94,7 +94,7 @@ class StudyFile:
         self._write([header])
 
     def append(self, rows: Iterable[Row]) -> None:
-        """Write rows; on return they are safe from a crash of this process."""
+        """Write rows. After the return, a crash of this process cannot lose them."""
         rows = list(rows)
         self._write([row.asdict() for row in rows])
         self.rows += rows
@@ -133,7 +133,7 @@ class StudyFile:
 
 
 def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
-    """Return header, rows, and the number of bytes in whole lines.
+    """Return header, rows, and the number of bytes in complete lines.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
     length = content.rfind(b"\n") + 1
     header: dict[str, Any] | None = None
     rows: dict[tuple[int, int], Row] = {}
-    first: dict[int, Row] = {}  # of each cell that has results
+    first: dict[int, Row] = {}  # first row of each cell with results
     for number, line in enumerate(content[:length].split(b"\n")[:-1], 1):
         try:
             record = read_json(_text(line))
@@ -172,7 +172,7 @@ def _text(line: bytes) -> str:
 
 
 def check_row(row: Row, header: dict[str, Any], first: dict[int, Row]) -> None:
-    """Refuse a row of no cell of the study, or with other columns than the first row of its cell."""
+    """Refuse a row that belongs to no cell, or with other columns than the first row of its cell."""
     if row.cell >= len(header["cells"]):
         raise InputError(
             f"the study has {len(header['cells'])} cells", argument="cell", value=row.cell

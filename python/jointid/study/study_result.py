@@ -1,4 +1,4 @@
-"""The result of a sweep: a row for every trial, as a table, a file, a summary."""
+"""The result of a sweep: one row per trial, as a table, a file and a summary."""
 
 from __future__ import annotations
 
@@ -29,28 +29,28 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Study(KeptResult):
-    """Many identifications, one row each.
+    """Many identifications, with one row each.
 
     Attributes
     ----------
     swept : tuple of str
         Names of the swept settings.
     cells : tuple of dict
-        Their values, one combination each; long values by their labels.
+        Values of the swept settings, one combination each. Labels replace long values.
     trials : int
-        Requested number in each cell.
+        Requested number of trials in each cell.
     seed : int
-        Trial t has the seed `seed` + t.
+        Seed of the first trial; trial t has the seed `seed` + t.
     truth : dict of str to float
         Known true parameters [SI].
     truths : tuple of dict
-        The same for each cell, if cells differ; otherwise empty.
+        Known true parameters of each cell, if cells differ; otherwise empty.
     rows : tuple of Row
-        In the order of cells, then trials.
+        Rows in the order of cells, then trials.
     settings : dict
         Recordings or scenario, joint, options and version, as a record.
     seconds : float
-        Wall time; for a resumed study, of the last part.
+        Wall time [s]; for a resumed study, of the last part.
 
     Examples
     --------
@@ -73,12 +73,12 @@ class Study(KeptResult):
 
     @property
     def complete(self) -> bool:
-        """Whether every trial is done."""
+        """Whether every trial is finished."""
         return len(self.rows) >= len(self.cells) * self.trials
 
     @property
     def title(self) -> str:
-        """One line with the swept settings and the number of finished trials."""
+        """Title line with the swept settings and the number of finished trials."""
         done, cells = len(self.rows), len(self.cells)
         whole = "" if self.complete else f" of {cells * self.trials}"
         over = ", ".join(self.swept) or "nothing"
@@ -103,7 +103,7 @@ class Study(KeptResult):
         Raises
         ------
         InputError
-            No such column.
+            The column does not exist.
         """
         table = self._table()
         if name not in table:
@@ -115,17 +115,17 @@ class Study(KeptResult):
         return np.array(table[name])
 
     def truth_of(self, cell: int) -> dict[str, float]:
-        """Return the true parameters in a cell; they differ between cells if they are swept."""
+        """Return the true parameters of a cell. Cells differ if true parameters are swept."""
         return self.truths[cell] if self.truths else self.truth
 
     def summary(self, *, within: float = 0.05) -> Summary:
-        """Return mean, spread and, where the truth is known, bias and success of each cell.
+        """Return mean and spread of each cell and, if the truth is known, bias and success.
 
         Parameters
         ----------
         within : float
-            A trial succeeds if the relative error of each parameter is at most this. Default 0.05, as in
-            the thesis.
+            A trial succeeds if the relative error of each parameter is at most this. Default 0.05, as in the
+            thesis.
 
         Raises
         ------
@@ -167,7 +167,7 @@ class Study(KeptResult):
         return printable(f"{self.title}\n\n{text}")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return header and rows of the study in JSON's types; a number that is not finite is a text."""
+        """Return header and rows of the study in JSON types. A number that is not finite is a text."""
         rows = [row.asdict() for row in self.rows]
         document: dict[str, Any] = json_types({"kind": KIND, **header_of(self), "rows": rows})
         return document
@@ -180,7 +180,7 @@ class Study(KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Study:
-        """Return the study that a JSON text holds.
+        """Return the study in a JSON text.
 
         Parameters
         ----------
@@ -190,7 +190,8 @@ class Study(KeptResult):
         Raises
         ------
         InputError
-            Not JSON, not a study, another schema, or a value that cannot be used; the error names the place.
+            The text is not JSON, is not a study, has another schema, or has an invalid value. The message
+            shows the place.
         """
         from jointid.study.reading_back import read_study
 
@@ -198,17 +199,17 @@ class Study(KeptResult):
         return study_of(header, rows)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the table to .csv or .parquet, or the study itself to .jsonl or .json; a failed write changes no file.
+        """Write the table to .csv or .parquet, or the study to .jsonl or .json. If writing fails, no file changes.
 
         Returns
         -------
         Path
-            Of the file.
+            Path of the file.
 
         Raises
         ------
         InputError
-            Another extension, or the folder does not exist.
+            The extension is another one, or the folder does not exist.
         """
         file = require_path("path", path)
         records = [header_of(self), *(row.asdict() for row in self.rows)]
@@ -217,7 +218,7 @@ class Study(KeptResult):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Study:
-        """Return the study of a .jsonl or .json file, finished or not.
+        """Return the study in a .jsonl or .json file, finished or not.
 
         Raises
         ------
@@ -244,7 +245,7 @@ class Study(KeptResult):
 
 
 def study_of(header: Mapping[str, Any], rows: list[Row], seconds: float = 0.0) -> Study:
-    """Return the study of a header and rows; of more trials than requested, the first ones."""
+    """Return the study of a header and rows. If there are more trials than requested, use the first ones."""
     wanted = sorted((r for r in rows if r.trial < header["trials"]), key=lambda row: row.place)
     return Study(
         swept=tuple(header["swept"]),

@@ -1,4 +1,4 @@
-"""Summary of a study: a table with one line per cell of mean, spread, bias and success."""
+"""Summary of a study: a table of mean, spread, bias and success, one line per cell."""
 
 from __future__ import annotations
 
@@ -21,21 +21,21 @@ if TYPE_CHECKING:
 
 
 SHOWN = 10  # cells in a text
-_ALIKE = 1e-4  # of a value: so much do searches differ that found the same minimum
+_ALIKE = 1e-4  # relative difference of searches that found the same minimum
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CellSummary:
-    """Statistics of the trials of a cell.
+    """Statistics of a cell's trials.
 
     Attributes
     ----------
     labels : dict
-        The swept settings.
+        Labels of the swept settings.
     trials, refused : int
-        Number of finished trials, and of refused ones among them.
+        Number of finished trials, and number of refused trials among them.
     reason : str
-        Why the first one was refused; empty if none was.
+        Reason for the first refusal; empty without one.
     converged : float
         Share of the trials with the status "converged".
     penalty : float
@@ -43,12 +43,12 @@ class CellSummary:
     mean, spread : dict of str to float
         Mean and standard deviation of each parameter over the trials [SI].
     stderr : dict of str to float
-        Median standard error of each parameter [SI]; empty where none was computed.
+        Median standard error of each parameter [SI]; empty if not computed.
     bias, scatter : dict of str to float
-        Mean error and spread, relative to the truth; empty if it is not known.
+        Mean error and spread, relative to the truth; empty if the truth is unknown.
     success : float or None
-        Share of all trials, refused ones included, with every parameter within the relative error of the
-        truth; None if it is not known.
+        Share of all trials, including refused ones, with every parameter within the relative error of the
+        truth. None if the truth is unknown.
     tracking : dict of str to float
         Medians of the tracking errors [rad].
     """
@@ -69,31 +69,31 @@ class CellSummary:
 
     @property
     def differ(self) -> bool:
-        """Whether the trials differ by more than a converged search does."""
+        """Whether the trials differ by more than converged searches do."""
         return any(self.spread[name] > _ALIKE * abs(mean) for name, mean in self.mean.items())
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Summary:
-    """A study's cells in numbers; `print` shows a table.
+    """Statistics of a study's cells; `print` shows a table.
 
     Attributes
     ----------
     cells : tuple of CellSummary
     within : float
-        Largest relative error of a success.
+        Largest relative error of a successful trial.
     """
 
     cells: tuple[CellSummary, ...]
     within: float
 
     def asdict(self) -> dict[str, Any]:
-        """Return the summary for JSON: None for values that are not finite or not known."""
+        """Return the summary for JSON: None for values that are not finite or unknown."""
         cells = [{n: _known(v) for n, v in _record(cell).items()} for cell in self.cells]
         return {"within": self.within, "cells": cells}
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return a row per cell; columns `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` per parameter.
+        """Return one row per cell; columns `NAME_mean`, `NAME_spread`, `NAME_bias`, `NAME_scatter` per parameter.
 
         Raises
         ------
@@ -106,7 +106,7 @@ class Summary:
         return self.text(SHOWN)
 
     def text(self, most: int) -> str:
-        """Return the table of so many cells at most, the best ones, as text."""
+        """Return the table with at most this number of cells, the best ones, as text."""
         header, body = summary_texts(self.best(most))
         widths = [max(len(line[i]) for line in [header, *body]) for i in range(len(header))]
         lines = [
@@ -119,14 +119,14 @@ class Summary:
         return printable("\n".join(line.rstrip() for line in lines))
 
     def best(self, count: int) -> Summary:
-        """Return the cells with the most successes or, where the truth is not known, the smallest penalties."""
+        """Return the cells with the most successes or, if the truth is unknown, with the smallest penalties."""
         if len(self.cells) <= count:
             return self
         ordered = sorted(self.cells, key=lambda each: (-(each.success or 0.0), each.penalty))
         return replace(self, cells=tuple(ordered[:count]))
 
     def to_html(self) -> str:
-        """Return what `print` shows, as HTML for a notebook."""
+        """Return the printed table as HTML for a notebook."""
         return str(html_summary(self))
 
 
@@ -208,7 +208,7 @@ def _share(flags: Sequence[bool]) -> float:
 
 
 def _mean(values: np.ndarray[Any, np.dtype[np.float64]]) -> float:
-    """Return the mean; of equal values exactly that value, which a mean may round."""
+    """Return the mean. For equal values, return exactly that value, because a mean may round it."""
     return float(values[0] if np.ptp(values) == 0.0 else values.mean())
 
 
@@ -228,7 +228,7 @@ def _record(cell: CellSummary) -> dict[str, Any]:
 
 
 def summary_texts(summary: Summary) -> tuple[list[str], list[list[str]]]:
-    """Return header and lines; a parameter as bias ± scatter [%] of a known truth, or as value ± error."""
+    """Return header and lines. A parameter is bias ± scatter [%] with a known truth, otherwise value ± error."""
     cells = summary.cells
     swept = list(cells[0].labels) if cells else []
     names = varying(cells)
@@ -260,7 +260,7 @@ def varying(cells: Sequence[CellSummary]) -> list[str]:
 
 
 def summary_notes(summary: Summary) -> list[str]:
-    """Return what was refused in each cell, and which parameters the table does not show."""
+    """Return notes about refused trials in each cell, and about parameters that the table does not show."""
     lines = [
         f"{cell_name(cell.labels) or 'all'}: {cell.refused} refused: {cell.reason}"
         for cell in summary.cells
@@ -282,7 +282,7 @@ def _left_out(summary: Summary) -> str:
 
 
 def _fixed(cells: Sequence[CellSummary], name: str) -> bool:
-    """Return whether a parameter has the same value, but for rounding, in all cells."""
+    """Return whether a parameter has the same value in all cells, except for rounding."""
     means = [cell.mean[name] for cell in cells if name in cell.mean]
     alike = max(means) - min(means) <= 1e-12 * abs(means[0])
     return alike and not any(cell.spread.get(name, 0.0) > 0.0 for cell in cells)
@@ -300,14 +300,14 @@ def _parameter(cell: CellSummary, name: str) -> str:
 
 
 def error_of(cell: CellSummary, name: str) -> float | None:
-    """Return the error of a parameter's mean; None where there is none."""
-    # The spread of trials that end in one minimum is rounding, and no error.
+    """Return the error of a parameter's mean; None without one."""
+    # The spread of trials with the same minimum is rounding, not an error.
     error = max(cell.stderr.get(name, 0.0), cell.spread.get(name, 0.0) if cell.differ else 0.0)
     return error if 0.0 < error < math.inf else None
 
 
 def _after(spread: float, form: str) -> str:
-    """Return the spread behind a value; nothing if it is not known, with one trial, or rounds to zero."""
+    """Return the spread after a value. It is empty if unknown, with a single trial, or if it rounds to zero."""
     text = f"{spread:{form}}"
     return f" ± {text}" if float(text) > 0.0 else ""
 

@@ -1,4 +1,4 @@
-"""`sweep`: identify over settings and seeds."""
+"""Identify over settings and seeds: the function `sweep`."""
 
 from __future__ import annotations
 
@@ -36,9 +36,9 @@ class StudyStep:
     Attributes
     ----------
     number, total : int
-        Number of trials done so far, and of all trials.
+        Number of finished trials, and number of all trials.
     rows : tuple of Row
-        Rows of the trials done since the last call.
+        Rows of the trials finished since the last call.
 
     Examples
     --------
@@ -54,7 +54,7 @@ class StudyStep:
 
 
 class StudyInterruptedError(KeyboardInterrupt):
-    """Ctrl-C in a sweep; `study` has the rows done so far.
+    """Ctrl-C in a sweep. `study` has the rows finished so far.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class StudyInterruptedError(KeyboardInterrupt):
 
 
 class StudyBrokenError(RuntimeError):
-    """A worker of a sweep's executor ended unexpectedly; `study` has the rows done so far.
+    """A worker of a sweep's executor ended unexpectedly. `study` has the rows finished so far.
 
     Parameters
     ----------
@@ -97,7 +97,7 @@ class StudyBrokenError(RuntimeError):
         self.study = study
 
 
-_TRIALS = 10  # where they differ
+_TRIALS = 10  # number of trials if trials differ
 
 
 @takes(IdentifyOptions)
@@ -118,39 +118,40 @@ def sweep(
 ) -> Study:
     """Identify with every combination of some settings, several times each.
 
-    All cells have the same options of `identify`. A model without a name is "coulomb_viscous". In every cell, trial t
-    adds t to the seed of `search`, for the search and for the noise of a simulated recording; `identify` with a row's
-    seed gives the row. 0 threads are all threads in this process, and 1 for each trial in an executor. A grid over
-    "ga" or its fields implies the method "ga", unless the call names one. Callback, checkpoint and resume are refused.
+    All cells have the same options of `identify`. A model without a name is "coulomb_viscous". In every cell,
+    trial t adds t to the seed of `search`, for the search and for the noise of a simulated recording.
+    `identify` with a row's seed gives the same row. With 0 threads, this process uses all threads, and an
+    executor uses one per trial. A grid over "ga" or its fields implies the method "ga", unless the call names
+    another. Callback, checkpoint and resume of `search` are refused.
 
     Parameters
     ----------
     subject : Recording, sequence of Recording, or Scenario
-        Recordings to identify from. A scenario is simulated for each trial, each with its own seed.
+        Recordings to identify from. A scenario is simulated once per trial, with the trial's seed.
     joint : Joint, optional
-        As in `identify`. Default with a scenario: the simulated joint; the search uses its bounds and
-        known values, not its parameters' values.
+        As in `identify`. Default with a scenario: the simulated joint. The search uses its bounds and known
+        values, not its parameters' values.
     grid : mapping of str to sequence or mapping, optional
-        Values of each setting, by its name, or a mapping from labels to values. Settings are arguments of
-        `identify` (``"windows"``, ``"model"``, ``"model.FIELD"``, …), of the search ``"method"``, ``"ga"``
-        and ``"ga.FIELD"``, fixed parameters ``"parameters.NAME"``, and of a scenario its fields,
-        ``"sensors.FIELD"``, ``"controller.FIELD"``, ``"truth.NAME"``. Default: one cell.
+        Values of each setting, by its name, or a mapping from labels to values. Settings are: arguments of
+        `identify` (``"windows"``, ``"model"``, ``"model.FIELD"``, …); ``"method"``, ``"ga"`` and
+        ``"ga.FIELD"`` of the search; fixed parameters ``"parameters.NAME"``; and a scenario's fields,
+        ``"sensors.FIELD"``, ``"controller.FIELD"`` and ``"truth.NAME"``. Default: one cell.
     trials : int, optional
-        Number of trials of each combination. Default: 10 if trials differ (a scenario's noise, a random search),
-        otherwise 1.
+        Number of trials of each combination. Default: 10 if trials differ (a scenario's noise, a random
+        search), otherwise 1.
     standard_errors : bool
         Whether to compute standard errors, which takes some milliseconds per trial. Default True.
     tracking : bool
-        Whether to simulate again with the identified and with the true parameters. It needs a scenario with a
-        controller that compensates friction. Default False.
+        Whether to simulate again with the identified and with the true parameters. This needs a scenario with
+        a controller that compensates friction. Default False.
     truth : mapping of str to float, optional
         True parameters [SI], for biases and shares of success. Default: those of the recordings or the
         scenario.
     executor : concurrent.futures.Executor, optional
-        Runs the trials: a process pool, or a cluster's executor, such as Dask's
-        ``client.get_executor()``. It is not shut down. Default: this process.
+        Runs the trials: a process pool, or a cluster's executor, such as Dask's ``client.get_executor()``. It
+        is not shut down. Default: this process.
     callback : callable, optional
-        Called with a `StudyStep` whenever trials finish; returning True stops the sweep.
+        Called with a `StudyStep` whenever trials finish. Return True to stop the sweep.
     output : path, optional
         File (.jsonl) that receives each row when its trial finishes.
     resume : bool
@@ -160,17 +161,17 @@ def sweep(
     Returns
     -------
     Study
-        The same rows, bit for bit, for any executor and number of threads, resumed or not.
+        The study. Its rows are bit-identical for any executor and number of threads, resumed or not.
 
     Raises
     ------
     InputError
-        Input that cannot be used: the error names the argument and the reason. Settings that cannot be
-        used with a recording give rows with the status "refused", and an error only if all are refused.
+        Input is invalid. The message names the argument and the reason. Settings that cannot be used with a
+        recording give rows with the status "refused", and an error only if all are refused.
     StudyBrokenError
         A worker of the executor ended unexpectedly.
     StudyInterruptedError
-        Ctrl-C; raised within 0.1 s, a `KeyboardInterrupt` whose `study` has the rows done so far.
+        Ctrl-C, raised within 0.1 s. It is a `KeyboardInterrupt`, and its `study` has the rows finished so far.
 
     Examples
     --------
@@ -228,12 +229,12 @@ def sweep(
     except BrokenExecutor as error:
         raise StudyBrokenError(study_of(header, rows, time.perf_counter() - began)) from error
     except KeyboardInterrupt as interrupt:
-        if output is not None:  # it may hold rows that were written as Ctrl-C came
+        if output is not None:  # the file may hold rows that were written during Ctrl-C
             rows = study_file.read(output)[1]
         study = study_of(header, rows, time.perf_counter() - began)
         raise StudyInterruptedError(study) from interrupt
     if rows and all(row.status == REFUSED for row in rows):
-        # A row has only the error's text: run its trial again for the error itself.
+        # A row has only the error's text, so the trial runs again to raise the error.
         list(Runner(work, strict=True).run([rows[0].place]))
         raise InputError(rows[0].message)
     return study_of(header, rows, time.perf_counter() - began)

@@ -18,7 +18,7 @@ from jointid.study.row import Row
 def columns(
     swept: Sequence[str], cells: Sequence[Mapping[str, Any]], rows: Sequence[Row]
 ) -> dict[str, list[Any]]:
-    """Return all columns: swept settings, the trial, its status, and all its numbers."""
+    """Return all columns: swept settings, trial, status, and all numbers."""
     table: dict[str, list[Any]] = {name: [cells[row.cell][name] for row in rows] for name in swept}
     for name in ("trial", "seed", "status", "penalty", "evaluations", "generations"):
         table[name] = [getattr(row, name) for row in rows]
@@ -44,12 +44,12 @@ def parameters_of(rows: Sequence[Row]) -> tuple[str, ...]:
 def save(
     table: Mapping[str, list[Any]], records: Sequence[Any], document: Callable[[], str], path: Path
 ) -> None:
-    """Write a study's table, its records, or its JSON, by the path's extension.
+    """Write a study's table, its records, or its JSON. The path's extension selects the form.
 
     Raises
     ------
     InputError
-        Another extension, or the folder does not exist.
+        The extension is another one, or the folder does not exist.
     """
     if not path.parent.is_dir():
         raise InputError(
@@ -104,7 +104,7 @@ def _parquet(table: Mapping[str, list[Any]]) -> bytes:
 
 
 def _one_kind(values: list[Any]) -> list[Any]:
-    """Return values of one type: a column of labels of several types becomes text."""
+    """Return values of one type. A column with labels of several types becomes text."""
     kinds = {type(value) for value in values if value is not None}
     if kinds <= {int, float} or len(kinds) < 2:
         return values

@@ -1,4 +1,4 @@
-"""The work of a study: its trials, their order, and the chunks in which an executor gets them."""
+"""The work of a study: its trials, their order, and the chunks for an executor."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jointid.study.cell import Cell, is_option
 
 Place = tuple[int, int]  # cell and trial
 
-# Cost of a trial besides the candidates of its search, in candidates (0.1 µs each).
+# Cost of a trial without its search's candidates, in candidates (0.1 µs each).
 _TRIAL, _SIMULATION = 10_000, 100_000
 _CHUNK = 2_000_000
 _PER_SAMPLE = (
@@ -25,21 +25,21 @@ _PER_SAMPLE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Work:
-    """Everything that trials need; it is sent to the process that runs them.
+    """All data that trials need; sent to the process that runs them.
 
     Attributes
     ----------
     subject : tuple of Recording, or Scenario
     joint : Joint or None
     common : dict of str to object
-        Options of a problem, the same in all cells.
+        Options of a problem, equal in all cells.
     search : Search
-        Trial t adds t to its seed.
+        The search. Trial t adds t to its seed.
     cells : tuple of Cell
     standard_errors, tracking : bool
-        Whether rows have them.
+        Whether rows include them.
     threads : int
-        0: all.
+        Number of threads. 0: all processors.
     """
 
     subject: tuple[Recording, ...] | Scenario
@@ -58,14 +58,14 @@ class Work:
 
     @property
     def trials_differ(self) -> bool:
-        """Whether the noise of a simulation or a random search tells two trials apart."""
+        """Whether the noise of a simulation or a random search makes trials differ."""
         if isinstance(self.subject, Scenario):
             return True
         methods = {each.search(self.search, self.seed, 1).chosen_method for each in self.cells}
         return methods != {"separable"}
 
     def ordered(self, trials: int, done: Iterable[Place]) -> list[Place]:
-        """Return the remaining trials; those that share a recording or a penalty follow each other."""
+        """Return the remaining trials. Trials that share a recording or a penalty follow each other."""
         left = set(itertools.product(range(len(self.cells)), range(trials))) - set(done)
         simulated = isinstance(self.subject, Scenario)
 
@@ -88,7 +88,7 @@ class Work:
         return repr([(n, labels[n]) for n in mine])
 
     def chunks(self, places: Sequence[Place]) -> Iterator[tuple[Place, ...]]:
-        """Yield parts of the work that each take some tenths of a second, and at least one trial."""
+        """Yield parts of the work that each take some tenths of a second, with at least one trial."""
         limit = _CHUNK
         if not isinstance(self.subject, Scenario):
             limit = max(limit, _PER_SAMPLE * sum(len(run) for run in self.subject))
