@@ -1,1 +1,1 @@
-"""Export of a joint to simulators, controllers and PLCs; one file for each target."""
+"""Export of a joint to simulators, controllers and PLCs, with one file of this folder per target."""

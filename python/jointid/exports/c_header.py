@@ -188,7 +188,7 @@ def _write(subject: Subject, order: Order) -> bytes:
 
 
 def _comment(line: str) -> str:
-    """Text that stands in a comment without ending it, beginning another, or making a trigraph."""
+    """Return text that neither ends a comment, nor begins one, nor forms a trigraph."""
     return plain(line).replace("*/", "* /").replace("/*", "/ *").replace("??", "? ?").rstrip("\\")
 
 

@@ -20,7 +20,7 @@ from jointid.servo.estimate import ServoEstimate
 if TYPE_CHECKING:
     from jointid.exports.target import Existing, Target
 
-_LARGEST = 64 * 2**20  # bytes of a file that is edited
+_LARGEST = 64 * 2**20  # largest number of bytes of a file to edit
 
 
 def export(
@@ -36,48 +36,48 @@ def export(
 ) -> Path:
     """Write an identified joint for a simulator, a controller, a PLC or Simulink.
 
-    Each file states its source, units, signs and gear ratio, the standard error and 95 % interval of each
-    parameter, the parameters that the recording does not determine, and what it cannot represent. Numbers have
-    all their digits. The file is written completely or not at all.
+    Each file states its source, units, signs and gear ratio, and the standard error and 95 % interval of each
+    parameter. It lists the parameters that the recording does not determine, and the effects that it cannot
+    represent. Numbers have all their digits. The file is written completely or not at all.
 
     Parameters
     ----------
     source : Estimate, Joint, ServoEstimate or RobotEstimate
-        A joint needs values for the parameters of its model; it has no uncertainty. A servo is exported as its
-        identified joint, also without uncertainty. A whole robot is written into its URDF, which `into` names:
-        damping and friction of every joint.
+        A joint needs values for the parameters of its model; it has no uncertainty. A servo is exported as
+        its identified joint, also without uncertainty. A whole robot is written into its URDF, which `into`
+        names: damping and friction of every joint.
     path : path-like
         The file ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3
         Structured Text), ``.mat`` (Simulink).
     target : {"mujoco", "urdf", "c", "st", "matlab"}, optional
-        A target instead of the one that the ending chooses.
+        A target that replaces the one of the file ending.
     into : path-like, optional
-        An existing MuJoCo or URDF file. The new file is a copy that sets damping and friction of one joint, in
-        MuJoCo also its armature and the stiffness of its dry friction, and adds a comment before the joint.
-        Everything else keeps its bytes. May be `path` itself. Default: a model of this joint alone.
+        An existing MuJoCo or URDF file. The new file is a copy with new damping and friction of one joint. In
+        MuJoCo, its armature and the stiffness of its dry friction also change. A comment is added before the
+        joint. Everything else keeps its bytes. May be `path` itself. Default: a model of this joint alone.
     joint_name : str, optional
         Name of the joint in `into`. Default: the joint's own name.
     approximate : bool
-        MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default) refuses other
-        friction. True writes the nearest Coulomb and viscous friction over the recorded speeds; the file states
-        what is lost.
+        MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default)
+        refuses other friction. True writes the nearest Coulomb and viscous friction over the recorded speeds.
+        The file states the parts that are lost.
     speed : float, optional
         Largest speed for the nearest friction and for tables [rad/s or m/s]. Default: the largest speed of the
         estimate's recordings, or the joint's limit.
     inertia : bool
-        Only for a whole robot: whether to write also the links' inertia, identified with ``inertia="free"`` or
+        Only for a whole robot: whether to write the links' inertia too, identified with ``inertia="free"`` or
         "scaled". The inertia of a link then includes all bodies fixed to it. Default False.
 
     Returns
     -------
     Path
-        The file.
+        Path of the file.
 
     Raises
     ------
     InputError
-        An unknown file ending, a parameter without a value, no such joint in `into`, a model that the target
-        cannot represent, or scipy, which writes ``.mat``, is not installed.
+        The file ending is unknown, a parameter has no value, `into` has no such joint, the target cannot
+        represent the model, or scipy, which writes ``.mat``, is not installed.
     OSError
         The file cannot be written.
 
@@ -89,7 +89,7 @@ def export(
     PosixPath('arm.xml')
     """
     from jointid.exports.registry import (
-        target_of,  # writers of formats: not needed by `import jointid`
+        target_of,  # writers of formats: `import jointid` does not need them
     )
     from jointid.exports.subject import subject_of
     from jointid.exports.target import Order
@@ -178,7 +178,7 @@ def _export_robot(
 
 
 def _existing(target: Target, into: str | os.PathLike[str] | None, joint: str) -> Existing | None:
-    """The file to edit, read."""
+    """Read the file to edit."""
     from jointid.exports.registry import TARGETS
     from jointid.exports.target import Existing
 

@@ -1,4 +1,4 @@
-"""A joint's torque law as expressions of a programming language."""
+"""A joint's torque law as expressions in a programming language."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ _PARTS: dict[Over, tuple[str, str]] = {
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Language:
-    """How a language writes the elements of a law."""
+    """Notation of a law's elements in a language."""
 
-    name: Callable[[str], str]  # a constant's name from a parameter's
+    name: Callable[[str], str]  # returns a constant's name for a parameter's name
     number: Callable[[float], str]
     exp: str
     log: str
@@ -29,12 +29,12 @@ class Language:
 
 
 def fading(law: Law, side: int, language: Language) -> list[str]:
-    """Return the summands of one direction's friction that do not vanish with the speed; `speed`, `load_size`."""
+    """Return the summands of one direction's friction that remain at low speed. They use `speed` and `load_size`."""
     return [_summand(each, language) for each in _of_side(law, side) if not each.vanishes]
 
 
 def growing(law: Law, side: int, language: Language) -> list[str]:
-    """Return the summands of one direction's friction that vanish with the speed."""
+    """Return the summands of one direction's friction that are zero at zero speed."""
     return [_summand(each, language) for each in _of_side(law, side) if each.vanishes]
 
 
@@ -90,12 +90,12 @@ def harmonic_names(harmonic: Harmonic) -> tuple[str, str]:
 
 
 def total(summands: Sequence[str], nothing: str) -> str:
-    """Return a sum, or what stands for an empty one."""
+    """Return the sum, or `nothing` for an empty one."""
     return " + ".join(summands) if summands else nothing
 
 
 def constants(law: Law) -> dict[str, float]:
-    """Return the law's numbers by the parameters' names, each once."""
+    """Return the law's numbers by parameter name, each once."""
     values: dict[str, float] = {}
     for term in law.friction:
         values |= {term.term.name: term.value, **term.shapes}
@@ -109,7 +109,7 @@ def constants(law: Law) -> dict[str, float]:
 
 
 def origin(parameter: str) -> str:
-    """Return where a number of the law comes from that is no parameter."""
+    """Return the source of a number in the law that is not a parameter."""
     return (
         "angle that the terms of position are centred at, from the model"
         if parameter.endswith("_centre")

@@ -1,4 +1,4 @@
-"""Names of a joint and its parameters, as programming languages allow them."""
+"""Names of a joint and its parameters that programming languages allow."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import re
 
 from jointid.exports.provenance import plain
 
-_LONGEST = 24  # C99 distinguishes the first 31 characters of a name that other files see
+_LONGEST = 24  # C99 distinguishes the first 31 characters of an external name
 
 
 def identifier(name: str, usual: str = "joint", *, longest: int = _LONGEST) -> str:
     """Return a name of letters, digits and single underscores that begins with a letter.
 
-    `usual` precedes a name that begins otherwise, and replaces one of which nothing is left.
+    `usual` is the prefix of a name that does not begin with a letter, and replaces an empty name.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The body behind a joint, for simulators of rigid bodies: mass, centre of mass, inertia, and the drive's part."""
+"""The body that a joint moves, for rigid-body simulators: mass, center of mass, inertia, and the drive's part."""
 
 from __future__ import annotations
 
@@ -11,27 +11,27 @@ from jointid.exports.subject import Subject
 from jointid.joint.joint import Joint
 from jointid.joint.link import STANDARD_GRAVITY
 
-# A body needs some inertia of its own, where the joint has none: a share that no result shows.
+# Smallest inertia of a body, as a share, if the joint has none. It is too small to affect results.
 _NOTHING = 1e-9
-# Of the mass of a joint that slides, at least in its body.
+# Smallest share of a sliding joint's mass that belongs to its body.
 _SHARE = 0.02
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Body:
-    """The moved body, with the law's inertia and gravity about the joint's axis."""
+    """The moved body, which gives the law's inertia and gravity about the joint's axis."""
 
     mass: float  # [kg]
-    distance: float  # of the centre of mass from the axis [m]
-    angle: float  # of the centre of mass above the horizontal, at position 0 [rad]
+    distance: float  # distance of the center of mass from the axis [m]
+    angle: float  # angle of the center of mass above the horizontal, at position 0 [rad]
     inertia: float  # about the centre of mass [kg·m²]
-    gravity: float  # [m/s²]; 0 where the model has no gravity
-    drive: float  # inertia of the drive at the output [kg·m²], or [kg]
-    note: str = ""  # what is chosen and not known
+    gravity: float  # [m/s²]; 0 if the model has no gravity
+    drive: float  # inertia of the drive on the joint side [kg·m²], or [kg]
+    note: str = ""  # chosen values that are not identified
 
 
 def drive_inertia(subject: Subject) -> float | None:
-    """Return the inertia of the drive alone, at the output; None if it is not known apart from the link's."""
+    """Return the inertia of the drive alone, on the joint side; None if it cannot be separated from the link's."""
     joint, law = subject.joint, subject.law
     if joint.sensor and law.inertia is not None:
         return law.inertia
@@ -59,7 +59,7 @@ def body_of(subject: Subject) -> Body:
         return _equivalent(law, joint, total, weight)
     slides = joint.kind == "prismatic"
     if joint.link is None:
-        # Sliding, dry friction is judged by the body's mass: all of it is there.
+        # A sliding joint's dry friction depends on the body's mass, so the body has all of it.
         mass, drive = (total, 0.0) if slides else (least, total)
         return Body(mass=mass, distance=0.0, angle=0.0, inertia=least, gravity=0.0, drive=drive)
     sensed = law.inertia if joint.sensor else None
@@ -89,7 +89,7 @@ def body_of(subject: Subject) -> Body:
 
 
 def _left(joint: Joint, total: float) -> float:
-    """The drive's part of an inertia that contains the link's."""
+    """Return the drive's part of an inertia that includes the link's."""
     drive = total - joint.link_inertia
     if drive < 0.0:
         raise InputError(
@@ -103,7 +103,7 @@ def _left(joint: Joint, total: float) -> float:
 
 
 def _equivalent(law: Law, joint: Joint, total: float, weight: float) -> Body:
-    """A point mass with the identified torque of gravity; only mass · distance is known."""
+    """Return a point mass with the identified torque of gravity. Only mass · distance is known."""
     (gravity,) = law.over("gravity")
     field = STANDARD_GRAVITY if joint.link is None else joint.link.gravity
     field = field or STANDARD_GRAVITY

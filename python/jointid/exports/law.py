@@ -22,15 +22,15 @@ Function = Literal["torque", "inertia"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FrictionTerm:
-    """One term of the friction: a coefficient times the core's basis."""
+    """One friction term: a coefficient times the core's basis."""
 
     term: _core.Term
     value: float
-    shapes: Mapping[str, float]  # in the order of the core
+    shapes: Mapping[str, float]  # in the core's order
 
     @property
     def vanishes(self) -> bool:
-        """Whether the friction vanishes with the speed."""
+        """Whether the friction is zero at zero speed."""
         return self.term.at_rest == 0.0
 
 
@@ -38,7 +38,7 @@ class FrictionTerm:
 class Harmonic:
     """A torque that is periodic in an angle: ``cos * cos(order * angle) + sin * sin(order * angle)``."""
 
-    over: Over  # "ripple" is over the motor's angle, the others over the joint's
+    over: Over  # "ripple" is over the motor's angle; all others are over the joint's
     order: float
     cos: float
     sin: float
@@ -53,39 +53,39 @@ class Harmonic:
 class Centred:
     """A function of the joint's angle: ``cos * (cos(angle - centre) - 1) + sin * sin(angle - centre)``."""
 
-    kind: Function  # with "inertia" the torque also grows by slope · v² / 2
+    kind: Function  # with "inertia", the torque also has slope · v² / 2
     centre: float
     cos: float
     sin: float
 
     def value(self, position: Array) -> Array:
-        """Return the function at positions."""
+        """Return the function's values at positions."""
         angle = position - self.centre
         return np.asarray(self.cos * (np.cos(angle) - 1.0) + self.sin * np.sin(angle))
 
     def slope(self, position: Array) -> Array:
-        """Return its derivative by the position."""
+        """Return the derivative with respect to the position."""
         angle = position - self.centre
         return np.asarray(self.sin * np.cos(angle) - self.cos * np.sin(angle))
 
     @property
     def size(self) -> float:
-        """An upper bound of its magnitude."""
+        """Upper bound of the magnitude."""
         return abs(self.cos) + math.hypot(self.cos, self.sin)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Law:
-    """The torque that a motion needs from the drive, at the output of the gear."""
+    """The torque that a motion needs from the drive, on the joint side of the gear."""
 
     friction: tuple[FrictionTerm, ...]
     harmonics: tuple[Harmonic, ...]
-    inertia: float | None  # in front of a torque sensor; without a sensor, all; None: not known
-    link_inertia: float  # behind the torque sensor; 0 without a sensor
+    inertia: float | None  # before a torque sensor; without a sensor, total inertia; None: unknown
+    link_inertia: float  # after the torque sensor; 0 without a sensor
     offset: float
     sensor: tuple[float, float] | None  # gain and offset: torque = gain · reading + offset
     gear_ratio: float
-    centred: tuple[Centred, ...] = ()  # own terms of the joint's own position
+    centred: tuple[Centred, ...] = ()  # own terms that depend on the joint's own position
 
     @property
     def total_inertia(self) -> float | None:
@@ -94,7 +94,7 @@ class Law:
 
     @property
     def loaded_by(self) -> str:
-        """Which torque load friction grows with, in words; "" without load friction."""
+        """The torque on which load friction depends, in words; "" without load friction."""
         loads = [each.term for each in self.friction if each.term.needs_load]
         if not loads:
             return ""
@@ -107,7 +107,7 @@ class Law:
     def friction_torque(
         self, velocity: ArrayLike, load: float = 0.0, *, width: float = 0.0
     ) -> Array:
-        """Return the friction at each velocity [N·m or N]; what is there at rest fades below the speed `width`."""
+        """Return the friction at each velocity [N·m or N]. Friction at rest fades below the speed `width`."""
         velocities = np.atleast_1d(np.asarray(velocity, dtype=np.float64))
         fade = np.tanh(np.abs(velocities) / width) if width > 0.0 else np.ones_like(velocities)
         total = np.zeros_like(velocities)
@@ -118,7 +118,7 @@ class Law:
         return total
 
     def position_torque(self, position: ArrayLike, *kinds: Over) -> Array:
-        """Return the torque over the position [N·m or N] of some kinds, or of all; own torques are "harmonics"."""
+        """Return the torque over the position [N·m or N] of some kinds, or of all. Own torques are "harmonics"."""
         positions = np.atleast_1d(np.asarray(position, dtype=np.float64))
         total = np.zeros_like(positions)
         for each in self.harmonics:
@@ -136,7 +136,7 @@ class Law:
         return tuple(each for each in self.centred if each.kind == kind)
 
     def inertia_torque(self, position: float, velocity: float, acceleration: float) -> float:
-        """Return the torque that accelerates drive and link [N·m or N]; an inertia that is not known counts 0."""
+        """Return the torque that accelerates drive and link [N·m or N]. An unknown inertia counts as 0."""
         at = np.atleast_1d(np.float64(position))
         own = self.functions("inertia")
         inertia = (self.total_inertia or 0.0) + sum(float(each.value(at)[0]) for each in own)
@@ -145,7 +145,7 @@ class Law:
 
 
 def law_of(joint: Joint, terms: Sequence[str], values: Mapping[str, float]) -> Law:
-    """Return the law of a joint with these keys of the core's terms and these values by parameter name."""
+    """Return the law of a joint from the keys of the core's terms and the parameter values."""
     sensor = "sensor_gain" in terms
     model = joint.model.resolved
     harmonics = []
@@ -159,7 +159,7 @@ def law_of(joint: Joint, terms: Sequence[str], values: Mapping[str, float]) -> L
             harmonics.append(_harmonic(over, order, [values[key] for key in keys]))
     link = 0.0
     if sensor and joint.link is not None:
-        # Behind the sensor, which measures its weight: no term of the balance, but of the torque.
+        # After the sensor, which measures its weight: part of the torque, but not a term of the balance.
         link = joint.link_inertia
         if joint.kind == "revolute" and not any(each.over == "gravity" for each in harmonics):
             known = joint.gravity_coefficients

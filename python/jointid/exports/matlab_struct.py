@@ -16,8 +16,8 @@ from jointid.exports.subject import ExportedValue, Subject
 from jointid.exports.tables import speed_scale
 from jointid.exports.target import Order, Target
 
-_ROWS = 201  # of a lookup table, in each direction
-_LONGEST = 63  # letters of a field's name in MATLAB
+_ROWS = 201  # rows of a lookup table, in each direction
+_LONGEST = 63  # characters of a field's name in MATLAB
 
 
 def _write(subject: Subject, order: Order) -> bytes:
@@ -103,9 +103,9 @@ def _known(value: float | None) -> float:
 
 
 def _friction(subject: Subject) -> dict[str, Any]:
-    """Friction over the speed: of each direction, and of both in one table that only rises in velocity."""
+    """Return the friction over the speed for each direction, and for both in one table with increasing velocity."""
     law, peak = subject.law, speed_scale(subject)
-    # Denser where the speed is small, as the Stribeck curve is.
+    # More rows at low speed, for the Stribeck curve.
     speed = peak * np.linspace(0.0, 1.0, _ROWS) ** 2
     speed[0] = 1e-6 * peak
     positive, negative = law.friction_torque(speed), law.friction_torque(-speed)
@@ -118,7 +118,7 @@ def _friction(subject: Subject) -> dict[str, Any]:
 
 
 def _periods(subject: Subject) -> dict[str, Any]:
-    """Gravity, torques over the joint's angle, and ripple over the motor's, by order."""
+    """Return gravity, torques over the joint's angle, and ripple over the motor's angle, by order."""
     periods: dict[str, Any] = {"centred": _centred(subject.law.functions("torque"))}
     for over in ("gravity", "harmonics", "ripple"):
         found = [each for each in subject.law.harmonics if each.over == over]
@@ -131,7 +131,7 @@ def _periods(subject: Subject) -> dict[str, Any]:
 
 
 def _centred(found: Sequence[Centred]) -> dict[str, Any]:
-    """An own function of the joint's angle; empty without one."""
+    """Return an own function of the joint's angle; empty without one."""
     return {
         "centre": np.array([each.centre for each in found]),
         "cos": np.array([each.cos for each in found]),

@@ -1,4 +1,4 @@
-"""MuJoCo: a model of the joint alone, or damping, friction and armature of a joint in an existing one."""
+"""MuJoCo: a model of the joint alone, or damping, friction and armature of a joint in an existing model."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from jointid.joint.checks import suggestion
 from jointid.simulation.plant import torque_limit
 
 _STEP = 0.0005
-# MuJoCo's dry friction is a soft constraint: below a speed in proportion to this time constant it fades. Its default
-# is 0.02 s.
+# MuJoCo's dry friction is a soft constraint. It fades below a speed that is proportional to this time
+# constant. The default is 0.02 s.
 _CONSTANT, _SOFTNESS = 0.002, 0.01
-# The same speed with MuJoCo's default solreffriction and solimpfriction, in proportion to ours.
+# The same speed with MuJoCo's default solreffriction and solimpfriction, relative to ours.
 _USUAL = (0.1 / 0.9) * (0.95 * 0.02) / (_SOFTNESS * _CONSTANT)
 _LEAST_SHARE = 0.02
-_LONGEST = 60  # letters of a name in a file of our own
+_LONGEST = 60  # characters of a name in our own file
 
 
 def _write(subject: Subject, order: Order) -> bytes:
@@ -41,13 +41,13 @@ def _write(subject: Subject, order: Order) -> bytes:
 
 
 def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
-    """Return in words what the nearest Coulomb and viscous friction loses."""
+    """Return sentences about the effects that the nearest Coulomb and viscous friction loses."""
     if not nearest.lost:
         return []
     unit = subject.torque_unit
     notes = [f"lost: {each}" for each in nearest.lost]
     load = " without load" if subject.law.loaded_by else ""
-    if nearest.speed is None:  # the friction itself is exact
+    if nearest.speed is None:  # the friction is exact
         return notes
     return [
         *notes,
@@ -91,7 +91,7 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
 
 
 def _soft_friction(share: float) -> dict[str, str]:
-    """How stiff the constraint is. Of a joint that slides, MuJoCo takes the body's share for the whole mass."""
+    """Return the constraint's stiffness. For a sliding joint, MuJoCo takes the body's share as the whole mass."""
     hard = repr(1.0 / (1.0 + _SOFTNESS * share))
     return {
         "solreffriction": f"{_CONSTANT!r} 1",
@@ -100,7 +100,7 @@ def _soft_friction(share: float) -> dict[str, str]:
 
 
 def _body_share(subject: Subject, armature: float | None) -> float:
-    """The body's share of what moves, as far as it is known apart from the drive's."""
+    """Return the body's share of the moved mass or inertia, if it can be separated from the drive's."""
     total = subject.law.total_inertia
     if total is None or armature is None:
         return 1.0
@@ -112,7 +112,7 @@ def _is_joint(element: Element) -> bool:
 
 
 def _elsewhere(subject: Subject) -> list[str]:
-    """What the model around the joint has to say."""
+    """Return notes on effects that the surrounding model must represent."""
     notes = []
     if subject.law.over("gravity"):
         notes.append("gravity: it follows from the masses of this file")
@@ -168,7 +168,7 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
 
 
 def _actuator(subject: Subject, name: str) -> str:
-    """The drive: its control is the motor's torque, its force the same; the gear makes torque at the joint of it."""
+    """Return the motor. Its control and its force are the motor torque, which the gear converts to joint torque."""
     joint = subject.joint
     if joint.voltage is not None:
         return voltage_motor(joint, joint.voltage, name)
@@ -180,13 +180,13 @@ def _actuator(subject: Subject, name: str) -> str:
         text += f' ctrllimited="true" ctrlrange="{-limit / abs(gear)!r} {limit / abs(gear)!r}"'
     if not offset:
         return f"<motor name={attribute(f'{name}_motor')} {text}/>"
-    # A constant torque against the drive, behind its limit.
+    # A constant torque against the drive, not affected by its limit.
     bias = f'gaintype="fixed" gainprm="1" biastype="affine" biasprm="{-offset / gear!r} 0 0"'
     return f"<general name={attribute(f'{name}_motor')} {text} {bias}/>"
 
 
 def _creep(subject: Subject, nearest: Nearest) -> float:
-    """The speed below which MuJoCo's dry friction is not fully there, with the settings above."""
+    """Return the speed below which MuJoCo's dry friction fades, with the settings above."""
     total = subject.law.total_inertia or 1.0
     return nearest.constant / total * _SOFTNESS * _CONSTANT / 2.0
 

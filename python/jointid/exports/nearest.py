@@ -1,4 +1,4 @@
-"""The nearest Coulomb and viscous friction, and the part of a joint's torque law that it loses."""
+"""The nearest Coulomb and viscous friction, and the parts of a joint's torque law that it loses."""
 
 from __future__ import annotations
 
@@ -20,15 +20,15 @@ class Nearest:
 
     constant: float  # friction at every speed [N·m or N]
     slope: float  # friction per speed
-    lost: tuple[str, ...] = ()  # what of the law is not in it; empty where it is exact
-    speed: float | None = None  # the fit's largest speed; None where there was no fit
+    lost: tuple[str, ...] = ()  # lost parts of the law; empty if the friction is exact
+    speed: float | None = None  # the fit's largest speed; None without a fit
     # Largest difference of the friction without load, and of the torques over the position.
     worst: float = 0.0
-    rms: float = 0.0  # of the friction's difference, all speeds alike
+    rms: float = 0.0  # of the friction's difference, equally weighted over speed
 
 
 def lost_terms(subject: Subject) -> tuple[str, ...]:
-    """Return in words the parts of a law that Coulomb and viscous friction cannot represent."""
+    """Return descriptions of the parts of a law that Coulomb and viscous friction cannot represent."""
     law, unit = subject.law, subject.torque_unit
     lost = []
     excess = [each for each in law.friction if each.shapes and not each.vanishes]
@@ -59,7 +59,7 @@ def lost_terms(subject: Subject) -> tuple[str, ...]:
 
 
 def _own_lost(subject: Subject) -> tuple[str, ...]:
-    """Return in words the own terms of a model that a body with Coulomb and viscous friction cannot represent."""
+    """Return descriptions of the own terms that a body with Coulomb and viscous friction cannot represent."""
     unit = subject.torque_unit
     lost = [
         f"torque over the joint's angle (up to {each.size:.4g} {unit})"
@@ -71,7 +71,7 @@ def _own_lost(subject: Subject) -> tuple[str, ...]:
 
 
 def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nearest:
-    """Return Coulomb and viscous friction: the law's own, or if `approximate` the nearest over the recorded speeds."""
+    """Return Coulomb and viscous friction: the law's own or, with `approximate`, the nearest fit."""
     law, own = subject.law, _own_lost(subject)
     friction = lost_terms(subject)
     lost = (*friction, *own)
@@ -108,7 +108,7 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
 
 
 def _fitted(law: Law, lost: tuple[str, ...], peak: float) -> Nearest:
-    """Least squares over all speeds alike, in both directions, with no negative part."""
+    """Return the least-squares fit over equally weighted speeds in both directions, without negative values."""
     half = (np.arange(_SPEEDS) + 0.5) / _SPEEDS * peak
     speed = np.concatenate([half, half])
     torque = np.concatenate([law.friction_torque(half), -law.friction_torque(-half)])
@@ -119,7 +119,7 @@ def _fitted(law: Law, lost: tuple[str, ...], peak: float) -> Nearest:
         candidates.append(np.where(np.arange(2) == kept, part, 0.0))
     allowed = [each for each in candidates if np.all(each >= 0.0)] or [np.zeros(2)]
     constant, slope = min(allowed, key=lambda each: float(np.sum((torque - columns @ each) ** 2)))
-    edge = np.array([1e-9, 1.0]) * peak  # where static friction is largest, and the end
+    edge = np.array([1e-9, 1.0]) * peak  # lowest and highest speed
     tried = np.concatenate([half, edge])
     worst = max(
         float(np.max(np.abs(sign * law.friction_torque(sign * tried) - constant - slope * tried)))

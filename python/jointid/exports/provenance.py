@@ -1,4 +1,4 @@
-"""The statements in every exported file: source, units, signs, uncertainty, and what is missing."""
+"""Statements in every exported file: source, units, signs, uncertainty, and missing parts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _PLAIN = str.maketrans(
 
 
 def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
-    """Return the statements of a file, line by line; `notes` name what the target represents differently, or not."""
+    """Return the statements of a file, line by line. `notes` describe parts that the target changes or lacks."""
     joint = subject.joint
     name = f"Joint '{joint.name}'" if joint.name else "Joint"
     force = "force" if joint.kind == "prismatic" else "torque"
@@ -79,7 +79,7 @@ def value_line(value: ExportedValue) -> str:
 
 
 def plain(text: str) -> str:
-    """Return text in ASCII on one line, for readers that may know no other."""
+    """Return text in ASCII on one line, for programs that read only ASCII."""
     decomposed = unicodedata.normalize("NFKD", text.translate(_PLAIN))
     return " ".join(decomposed.encode("ascii", "ignore").decode("ascii").split(" ")).translate(
         dict.fromkeys((*range(32), 127), " ")

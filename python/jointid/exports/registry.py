@@ -1,4 +1,4 @@
-"""The list of targets. A new target is one file in this folder, and one line in `MODULES`."""
+"""The list of targets. A new target needs one file in this folder and one line in `MODULES`."""
 
 from importlib import import_module
 from pathlib import Path
@@ -28,7 +28,7 @@ def endings_text() -> str:
 
 
 def target_of(path: Path, name: str | None) -> Target:
-    """Return the target of this name, or the one that a file's ending chooses."""
+    """Return the target of this name, or the target of a file's ending."""
     if name is not None:
         check_choice("", "target", name, [target.name for target in TARGETS])
         return next(target for target in TARGETS if target.name == name)

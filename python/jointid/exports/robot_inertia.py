@@ -1,4 +1,4 @@
-"""A whole robot's inertia into its URDF: mass, centre and inertia of every link that an identified joint moves."""
+"""Write a whole robot's inertia into its URDF: mass, center and inertia of every moved link."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _TURNING = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
 
 
 def with_link_inertias(estimate: RobotEstimate, content: bytes, place: str) -> bytes:
-    """Return a URDF with the inertial parameters of an estimate; everything else keeps its bytes.
+    """Return a URDF with the inertial parameters of an estimate. Everything else keeps its bytes.
 
-    The link that a joint moves gets the inertia of all bodies fixed to it; those bodies lose theirs.
+    The link that a joint moves gets the inertia of all bodies fixed to it. Those bodies lose their own inertia.
     """
     _check(estimate)
     found = elements(content, place)
@@ -56,7 +56,7 @@ def _check(estimate: RobotEstimate) -> None:
 
 
 def _bodies(estimate: RobotEstimate, found: Sequence[Element], place: str) -> list[list[Element]]:
-    """The links of each body: the one that its joint moves, and those fixed to it."""
+    """Return the links of each body: the link that its joint moves, and the links fixed to it."""
     links = {
         each.attributes.get("name", ""): each
         for each in found
@@ -84,7 +84,7 @@ def _bodies(estimate: RobotEstimate, found: Sequence[Element], place: str) -> li
     bodies = []
     for name in names:
         body = [ends[name][1]]
-        for link in body:  # it grows
+        for link in body:  # the list grows in the loop
             body += [child for parent, child in fixed if parent == link and child not in body]
         bodies.append(body)
     for link in (each for body in bodies for each in body):
@@ -94,7 +94,7 @@ def _bodies(estimate: RobotEstimate, found: Sequence[Element], place: str) -> li
 
 
 def _ends(joint: Element, found: Sequence[Element], place: str) -> tuple[str, str]:
-    """Names of a joint's parent and child link."""
+    """Return the names of a joint's parent and child link."""
     number = found.index(joint)
     named = {each.tag: each.attributes.get("link", "") for each in found if each.parent == number}
     if not {"parent", "child"} <= named.keys():
@@ -106,7 +106,7 @@ def _ends(joint: Element, found: Sequence[Element], place: str) -> tuple[str, st
 def _edit(
     found: Sequence[Element], content: bytes, link: Element, text: bytes
 ) -> tuple[int, int, bytes]:
-    """Where a link's inertia stands, and what stands there then."""
+    """Return the place of a link's inertia in the file, and the new content."""
     number = found.index(link)
     for each in found:
         if each.parent == number and each.tag == "inertial":
@@ -120,7 +120,7 @@ def _edit(
 
 
 def _inertial(estimate: RobotEstimate, number: int, content: bytes, link: Element) -> bytes:
-    """The element, laid out by the link's place."""
+    """Return the element, indented like the link."""
     m, x, y, z, xx, xy, yy, xz, yz, zz = (float(each) for each in estimate.inertial[number])
     if m <= 0.0:
         return b""

@@ -1,4 +1,4 @@
-"""A whole robot's friction into its URDF: damping and friction of every identified joint."""
+"""Write a whole robot's friction into its URDF: damping and friction of every identified joint."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from jointid.robot.links.parameters import DIFFERENCE, MOTOR_TERMS, VISCOUS
 from jointid.robot.result.record import RobotJoint
 from jointid.robot.result.result import RobotEstimate
 
-_DAMPING, _FRICTION = "damping", "friction"  # words of the URDF
+_DAMPING, _FRICTION = "damping", "friction"  # attribute names in the URDF
 
 
 def robot_in_urdf(
     estimate: RobotEstimate, content: bytes, place: str, *, approximate: bool, inertia: bool
 ) -> bytes:
-    """Return a URDF with the damping and friction of all joints of an estimate; the rest keeps its bytes.
+    """Return a URDF with the damping and friction of all joints of an estimate. The rest keeps its bytes.
 
-    If `approximate`, friction that URDF cannot hold is lost; if `inertia`, the links get their identified inertia.
+    `approximate` omits friction that URDF cannot represent. `inertia` also writes the links' identified inertia.
     """
     for joint in estimate.joints.values():
         lost = _lost(joint)
@@ -47,12 +47,12 @@ def _with_dynamics(content: bytes, place: str, joint: RobotJoint) -> bytes:
         content = with_attributes(content, dynamics[0], changes)
     else:
         content = with_children(content, element, children, [("dynamics", changes)])
-    # The start tag of the joint stands before what was changed.
+    # The start tag of the joint precedes the changed part.
     return with_comment(content, element, _lines(joint))
 
 
 def _written(joint: RobotJoint) -> dict[str, str]:
-    """The URDF's words by names of the parameters that it has."""
+    """Return the URDF attribute for each parameter that URDF has."""
     terms = terms_of(joint.model)
     words = {term.name: _FRICTION for term in terms if term.settles}
     return words | {term.name: _DAMPING for term in terms if term.basis == VISCOUS.basis}

@@ -1,4 +1,4 @@
-"""IEC 61131-3 Structured Text: a function block with the joint's torques, and one that checks it."""
+"""IEC 61131-3 Structured Text: a function block with the joint's torques, and a block that checks it."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def _write(subject: Subject, order: Order) -> bytes:
 
 
 def literal(value: float) -> str:
-    """Return a number as IEC 61131-3 writes it: with a point, also before an exponent.
+    """Return a number in the notation of IEC 61131-3: with a decimal point, also before an exponent.
 
     Examples
     --------
@@ -58,12 +58,12 @@ def literal(value: float) -> str:
 
 
 def _constant(name: str) -> str:
-    """A constant's name: words such as STATIC mean something to some systems, which know no small letters."""
+    """Return a constant's name. The prefix avoids keywords such as STATIC, because some systems ignore case."""
     return f"P_{upper(name)}"
 
 
 def _safe(text: str) -> str:
-    """Text that stands in a comment without ending it or beginning another."""
+    """Return text that neither ends a comment nor begins another."""
     return plain(text).replace("*)", "* )").replace("(*", "( *").replace("$", "")
 
 
@@ -184,7 +184,7 @@ def _constants(subject: Subject) -> list[str]:
 
 
 def _check(subject: Subject, name: str) -> list[str]:
-    rows = reference_values(subject)[::3]  # arrays that are long take some systems long to read
+    rows = reference_values(subject)[::3]  # some systems are slow with long arrays
     inputs = ("position", "velocity", "acceleration", "load", "width", "reading")
     outputs = ("friction", "torque", "sensor_torque")
     columns = [

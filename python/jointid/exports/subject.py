@@ -1,4 +1,4 @@
-"""The exported joint: its values, their uncertainty, and their source."""
+"""The exported joint: values, uncertainty and source."""
 
 from __future__ import annotations
 
@@ -27,32 +27,32 @@ _SENSOR = ("sensor_gain", "sensor_offset")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportedValue:
-    """One parameter as it is exported."""
+    """One exported parameter."""
 
     name: str
     meaning: str
     unit: str
     value: float
-    stderr: float | None = None  # of chance alone; None: not known
-    interval: tuple[float, float] | None = None  # 95 %; None: not known
+    stderr: float | None = None  # from random errors only; None: unknown
+    interval: tuple[float, float] | None = None  # 95 %; None: unknown
     remark: str = ""  # "fixed", "not well determined by the recording", …
     doubtful: bool = False  # the recording did not determine it, or not well
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Subject:
-    """A joint as it is exported."""
+    """An exported joint."""
 
     joint: Joint
     law: Law
     values: tuple[ExportedValue, ...]  # in the order of the torque balance
     model: str
-    source: str  # where the values come from
-    date: str  # of the export, in UTC
-    version: str  # of jointid that exports
+    source: str  # source of the values
+    date: str  # date of the export, in UTC
+    version: str  # version of the exporting jointid
     findings: tuple[str, ...]  # warnings of the estimate
-    speed: float | None  # largest speed of the recordings [rad/s or m/s]; None: not known
-    others: str = ""  # the torque of other signals, which no file has, with its size
+    speed: float | None  # largest speed of the recordings [rad/s or m/s]; None: unknown
+    others: str = ""  # description and size of the torque of other signals, which no file contains
 
     @property
     def undetermined(self) -> tuple[str, ...]:
@@ -61,7 +61,7 @@ class Subject:
 
     @property
     def unknown(self) -> tuple[str, ...]:
-        """Names of the other parameters whose uncertainty is not known."""
+        """Names of the other parameters with unknown uncertainty."""
         return tuple(
             each.name
             for each in self.values
@@ -80,7 +80,7 @@ class Subject:
 
 
 def subject_of(value: Estimate | Joint, speed: float | None = None) -> Subject:
-    """Return the export of an estimate, or of a joint with values that are known up to a speed [rad/s or m/s]."""
+    """Return the export of an estimate, or of a joint with values valid up to a speed [rad/s or m/s]."""
     require_kind("source", value, Estimate, Joint)
     subject = _of_estimate(value) if isinstance(value, Estimate) else _of_joint(value)
     for each in subject.values:
@@ -132,7 +132,7 @@ def _of_estimate(estimate: Estimate) -> Subject:
 
 
 def _others(joint: Joint, values: Mapping[str, float], estimate: Estimate | None = None) -> str:
-    """The torque of signals that the joint does not have, with the coefficients and, where known, its size."""
+    """Return a description of the torque of other signals: coefficients and, if known, size."""
     own = joint.model.resolved.terms
     terms = OwnTerms(tuple(each for each in own.each if each.signal != POSITION))
     if not terms.each:
@@ -182,7 +182,7 @@ def _estimated(found: ParameterEstimate, weak: bool) -> ExportedValue:
 
 
 def _shared(entries: list[ExportedValue]) -> list[ExportedValue]:
-    """One value for a parameter that each recording has for itself: their mean."""
+    """Return one value, the mean, for a parameter that each recording has separately."""
     shared: dict[str, list[ExportedValue]] = {}
     for each in entries:
         shared.setdefault(each.name.partition("[")[0], []).append(each)
@@ -241,7 +241,7 @@ def _of_joint(joint: Joint) -> Subject:
         for key in own.keys:
             given = joint.parameters.get(key)
             if own.signal != POSITION and (given is None or given.value is None):
-                continue  # of signals that no file has
+                continue  # depends on signals that no file contains
             term = _core.term(key)
             add(key, term.meaning, term.unit_prismatic if slides else term.unit)
     numbers = {name: each.value for name, each in values.items()}
@@ -260,7 +260,7 @@ def _of_joint(joint: Joint) -> Subject:
 
 
 def _fact(joint: Joint, name: str) -> float | None:
-    """A value that the joint's facts give."""
+    """Return a value that the joint's facts give."""
     if name == "inertia":
         return joint.known_inertia
     if name in _GRAVITY and joint.model.resolved.gravity == "known":
@@ -270,7 +270,7 @@ def _fact(joint: Joint, name: str) -> float | None:
 
 
 def _terms_of(joint: Joint) -> tuple[str, ...]:
-    """Keys of the terms of a joint's model, in the core's order; the offset only where it has a value."""
+    """Return the keys of the terms of a joint's model, in the core's order. The offset needs a value."""
     model = joint.model.resolved
     wanted = {"inertia", *_core.model_terms(model.name, asymmetric=model.asymmetric)}
     wanted |= set(_GRAVITY) if model.gravity != "none" else set()

@@ -1,4 +1,4 @@
-"""Reference values of a joint's law: motions, and the torques that belong to them."""
+"""Reference values of a joint's law: motions and their torques."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Reference:
     acceleration: float
     load: float
     reading: float
-    width: float  # of the smooth sign; 0: the sign itself
+    width: float  # width of the smooth sign; 0: the exact sign
     friction: float
     position_torque: float
     torque: float
@@ -26,17 +26,17 @@ class Reference:
 
 
 def speed_scale(subject: Subject) -> float:
-    """Return the largest speed of the tables: the recorded one, or 1 if it is not known."""
+    """Return the largest speed of the tables: the recorded one, or 1 if it is unknown."""
     return subject.speed or 1.0
 
 
 def smooth_width(subject: Subject) -> float:
-    """Return the speed below which a smooth sign fades: a hundredth of the recorded range."""
+    """Return the speed below which a smooth sign fades: 1 % of the recorded range."""
     return 0.01 * speed_scale(subject)
 
 
 def reference_values(subject: Subject) -> tuple[Reference, ...]:
-    """Return motions in both directions, at rest, slow and fast, and the torques that belong to them."""
+    """Return motions in both directions, at rest, slow and fast, and their torques."""
     law, peak = subject.law, speed_scale(subject)
     shares = [0.0, 1e-6, 0.003, 0.03, 0.1, 0.25, 0.5, 1.0]
     signed = [sign * share for share in shares for sign in ((1.0, -1.0) if share else (1.0,))]
@@ -74,7 +74,7 @@ def reference_values(subject: Subject) -> tuple[Reference, ...]:
 
 
 def torque_scale(subject: Subject) -> float:
-    """Return the size of the law's torques, by which differences are judged."""
+    """Return the size of the law's torques, as a reference for differences."""
     rows = reference_values(subject)
     sizes = [max(abs(r.friction), abs(r.torque), abs(r.sensor_torque)) for r in rows]
     return float(np.max(sizes)) or 1.0

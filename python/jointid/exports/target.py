@@ -1,4 +1,4 @@
-"""The declaration of a target: its name, file endings, and how a joint is written for it."""
+"""The declaration of a target: name, file endings, and function that writes a joint."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from jointid.exports.subject import Subject
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Existing:
-    """A file that gets a joint's values."""
+    """An existing file to receive a joint's values."""
 
     content: bytes
     place: str  # the file's name, for errors
@@ -19,19 +19,19 @@ class Existing:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Order:
-    """The order to a target."""
+    """The options of an export."""
 
     name: str
-    approximate: bool = False  # whether the nearest may replace what the target cannot express
-    into: Existing | None = None  # the file to edit; None: a new one
+    approximate: bool = False  # allow the nearest friction that the target can represent
+    into: Existing | None = None  # the file to edit; None: a new file
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Target:
-    """How a joint is written for one kind of consumer."""
+    """Description of one export target."""
 
     name: str
-    endings: tuple[str, ...]  # of file names that choose this target, in lower case, with the dot
+    endings: tuple[str, ...]  # file endings that choose this target, in lower case, with the dot
     meaning: str  # for help, e.g. "MuJoCo model"
-    write: Callable[[Subject, Order], bytes]  # the file's content
+    write: Callable[[Subject, Order], bytes]  # returns the file's content
     edits: bool = False  # whether it can set the values of a joint in an existing file

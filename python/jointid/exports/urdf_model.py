@@ -1,4 +1,4 @@
-"""URDF: a robot of this joint alone, or the dynamics of a joint in an existing one."""
+"""URDF: a robot with only this joint, or the dynamics of a joint in an existing URDF."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from jointid.joint.checks import suggestion
 from jointid.joint.link import STANDARD_GRAVITY
 from jointid.simulation.plant import torque_limit
 
-_LONGEST = 60  # letters of a name in a file of our own
+_LONGEST = 60  # characters of a name in our own file
 
 
 def _write(subject: Subject, order: Order) -> bytes:
@@ -37,7 +37,7 @@ def _write(subject: Subject, order: Order) -> bytes:
 
 
 def _notes(subject: Subject, nearest: Nearest) -> list[str]:
-    """What URDF's dynamics do not hold."""
+    """Return notes on parts that URDF's dynamics cannot represent."""
     notes = loss_notes(subject, nearest)
     drive = drive_inertia(subject)
     if drive is not None:
@@ -62,7 +62,7 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     if subject.law.over("gravity"):
         notes.append("gravity: it follows from the masses of this file")
     content = into.content
-    # From the end of the joint to its begin, so that the places in front stay.
+    # From the last to the first, so that earlier positions stay valid.
     edits: list[tuple[Element, dict[str, str]]] = []
     added = []
     dynamics = [each for each in children if each.tag == "dynamics"]
@@ -72,7 +72,7 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
         added.append(("dynamics", changes))
     known = _limits(subject)
     limits = [each for each in children if each.tag == "limit"]
-    if limits:  # what the robot's maker stated stays
+    if limits:  # values from the robot's manufacturer are kept
         missing = {k: v for k, v in known.items() if k not in limits[0].attributes}
         if missing:
             edits.append((limits[0], missing))
@@ -85,15 +85,15 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
 
 
 def is_joint(element: Element) -> bool:
-    """Whether an element is a joint of the robot."""
-    # Transmissions and controllers name joints, too; only the robot's own have a type.
+    """Return whether an element is a joint of the robot."""
+    # Transmissions and controllers also name joints. Only the robot's own joints have a type.
     return element.tag == "joint" and "type" in element.attributes
 
 
 def with_children(
     content: bytes, joint: Element, children: list[Element], added: list[tuple[str, dict[str, str]]]
 ) -> bytes:
-    """Put elements before the joint's end tag, laid out as its other children."""
+    """Insert elements before the joint's end tag, indented like its other children."""
     if not added:
         return content
     if content[: joint.inner].endswith(b"/>"):
@@ -151,7 +151,7 @@ def _robot(subject: Subject, nearest: Nearest, name: str) -> str:
     x, z = body.distance * math.cos(body.angle), body.distance * math.sin(body.angle)
     axis = "1 0 0" if slides else "0 -1 0"
     base, link = attribute(f"{name}_base"), attribute(f"{name}_link")
-    # URDF has no inertia of a drive: about the axis, one body has both.
+    # URDF has no drive inertia. About the axis, one body has both.
     around = repr(body.inertia + (0.0 if slides else body.drive))
     mass = repr(body.mass + (body.drive if slides else 0.0))
     if body.gravity == 0.0:

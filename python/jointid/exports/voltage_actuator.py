@@ -1,4 +1,4 @@
-"""MuJoCo: the motor of a servo; its control is the duty."""
+"""MuJoCo: the motor of a servo, controlled by the duty."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from jointid.joint.joint import Joint
 from jointid.joint.voltage_drive import VoltageDrive
 
 GROUP = 1
-"""Group of the actuator; disabled, the motor turns freely."""
+"""Actuator group of the motor. With the group disabled, the motor turns freely."""
 
 VOLTAGE_NOTES = (
     "the control is the duty of the servo, -1 to 1; the position loop is not part of it. While the motor is not "
@@ -17,7 +17,7 @@ VOLTAGE_NOTES = (
 
 
 def voltage_motor(joint: Joint, drive: VoltageDrive, name: str) -> str:
-    """Return the element of a motor on a voltage: force = (k_t / R) supply duty - (k_t² / R) velocity."""
+    """Return the element of a motor with voltage input: force = (k_t / R) supply duty - (k_t² / R) velocity."""
     for argument, value in (
         ("torque_constant", joint.torque_constant),
         ("resistance", drive.resistance),

@@ -1,4 +1,4 @@
-"""Attributes of one element of an XML text, edited in place: everything else keeps its bytes."""
+"""Edit attributes of one XML element in place. Everything else keeps its bytes."""
 
 from __future__ import annotations
 
@@ -15,15 +15,15 @@ _PAIR = re.compile(rb"""(\s+)([^\s=/>]+)(\s*=\s*)("[^"]*"|'[^']*')""")
 
 @dataclass(frozen=True, slots=True)
 class Element:
-    """One element of a text."""
+    """One element of an XML text."""
 
     tag: str
     attributes: Mapping[str, str]
-    path: tuple[str, ...]  # tags of the elements around it, the outermost first
-    start: int  # where its start tag begins
-    inner: int  # the byte behind its start tag
-    stop: int  # where its end tag begins; `inner` for an element without one
-    parent: int  # place of the element around it in the list of all; -1 for the root
+    path: tuple[str, ...]  # tags of the enclosing elements, outermost first
+    start: int  # position of its start tag
+    inner: int  # position after its start tag
+    stop: int  # position of its end tag; `inner` for an element without one
+    parent: int  # index of the enclosing element in the list of all; -1 for the root
 
 
 def elements(content: bytes, place: str) -> list[Element]:
@@ -40,7 +40,7 @@ def elements(content: bytes, place: str) -> list[Element]:
 
     def begin(tag: str, attributes: dict[str, str]) -> None:
         start = parser.CurrentByteIndex
-        if content[start : start + 1] != b"<":  # it stands in the text of an entity
+        if content[start : start + 1] != b"<":  # it is in the text of an entity
             raise InputError("elements in entities cannot be edited", place=place)
         path = tuple(found[each].tag for each in open_)
         end = tag_end(content, start)
@@ -69,7 +69,7 @@ def elements(content: bytes, place: str) -> list[Element]:
 
 
 def tag_end(content: bytes, start: int) -> int:
-    """The byte behind a start tag; a `>` may stand in an attribute's value."""
+    """Return the position after a start tag. An attribute's value may contain `>`."""
     quote = b""
     for at in range(start, len(content)):
         byte = content[at : at + 1]
@@ -83,7 +83,7 @@ def tag_end(content: bytes, start: int) -> int:
 
 
 def with_attributes(content: bytes, element: Element, changes: Mapping[str, str]) -> bytes:
-    """Return the text with some attributes of one element set; new ones stand last."""
+    """Return the text with some attributes of one element set. New attributes come last."""
     tag = content[element.start : element.inner]
     left = dict(changes)
 
@@ -103,7 +103,7 @@ def with_attributes(content: bytes, element: Element, changes: Mapping[str, str]
 
 
 def with_comment(content: bytes, element: Element, lines: Sequence[str]) -> bytes:
-    """Return the text with a comment before an element; an earlier one of ours there is replaced."""
+    """Return the text with a comment before an element. It replaces an earlier comment of ours."""
     before = content[: element.start]
     newline = b"\r\n" if b"\r\n" in content else b"\n"
     indent = re.search(rb"[ \t]*\Z", before)
@@ -117,20 +117,20 @@ def with_comment(content: bytes, element: Element, lines: Sequence[str]) -> byte
 
 
 def comment(lines: Sequence[str], indent: str = "") -> str:
-    """Return an XML comment; two dashes, which end one, are kept apart."""
+    """Return an XML comment. Two dashes would end it, so they are separated."""
     safe = [re.sub(r"-(?=-)", "- ", _characters(line)).rstrip("-") for line in lines]
     return f"<!-- {MARK} " + f"\n{indent}     ".join(safe) + " -->"
 
 
 def _characters(text: str) -> str:
-    """Text without characters that XML does not have."""
+    """Return text without characters that XML does not allow."""
     return "".join(c for c in text if c in "\t" or (c >= " " and not "\ud800" <= c <= "\udfff"))
 
 
 def attribute(value: str) -> str:
-    """Return an attribute's value with its quotes."""
+    """Return an attribute's value with quotes."""
     from xml.sax.saxutils import (
-        quoteattr,  # brings the standard library's network clients: only when a file is written
+        quoteattr,  # imports the standard library's network clients, so only when a file is written
     )
 
     return quoteattr(_characters(value))
@@ -150,7 +150,7 @@ def only(
     place: str,
     suggestion: Callable[[str, list[str]], str],
 ) -> Element:
-    """Return the one joint of a name."""
+    """Return the only joint with a name."""
     joints = [each for each in found if is_joint(each)]
     named = [each for each in joints if each.attributes.get("name") == name]
     if len(named) == 1:
