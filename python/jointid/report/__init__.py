@@ -1,1 +1,1 @@
-"""Reports of results: pages made of sections, in several formats."""
+"""Reports of results: pages with sections, in several formats."""

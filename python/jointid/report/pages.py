@@ -1,4 +1,4 @@
-"""The page of any result: its sections in order."""
+"""Build the page of any result from its sections, in order."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def page_of(result: Result, extras: Extras) -> Page:
     Raises
     ------
     InputError
-        Not a result, or recordings that the result was not made from.
+        The argument is not a result, or the recordings are not those of the result.
     """
     if kind_of(result) not in KINDS:
         raise InputError(
@@ -45,7 +45,7 @@ def parts_of(result: Result, extras: Extras) -> list[Part]:
 
 
 def first_parts(result: Result) -> tuple[str, list[Part]]:
-    """Return the title, and the parts that a notebook shows."""
+    """Return the title, and the parts for a notebook."""
     seen = result.overview
     names = list(SECTIONS)
     shown = names[: names.index(LAST_IN_NOTEBOOK) + 1]

@@ -1,4 +1,4 @@
-"""The report of any result as a page, and as a file."""
+"""The report of any result, as page text or as a file."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def report_page(
     action, recordings, rollout
         See `save_report`.
     ending : str
-        The format, as `RENDERERS` names it. Default HTML.
+        The format, by its name in `RENDERERS`. Default HTML.
 
     Returns
     -------
@@ -45,7 +45,7 @@ def report_page(
     Raises
     ------
     InputError
-        Not a result, or recordings that the result was not made from.
+        The argument is not a result, or the recordings are not those of the result.
     """
     extras = Extras(action, () if recordings is None else tuple(listed(recordings)), rollout)
     renderer = import_module(f"jointid.report.renderers.{RENDERERS[ending]}")
@@ -68,7 +68,8 @@ def save_report(
     result : Result
         Result of `identify`, `compare`, `design`, `simulate`, `sweep` or `commission`.
     path : path
-        Ends in .html, .md or .txt; the last two have captions instead of pictures. An existing file is replaced.
+        Path that ends in .html, .md or .txt. The last two have captions instead of pictures. An existing file
+        is replaced.
     action : callable
         Returns the words of a finding's advice. Default: as at a Python prompt.
     recordings : Recording or sequence of Recording, optional
@@ -85,9 +86,10 @@ def save_report(
     Raises
     ------
     InputError
-        Not a result, an estimate of other recordings, another file ending, or a folder that does not exist.
+        The argument is not a result, the estimate has other recordings, the file ending is another one, or
+        the folder does not exist.
     OSError
-        The file cannot be written; an existing one is untouched.
+        The file cannot be written. An existing file is unchanged.
 
     Examples
     --------
@@ -95,7 +97,7 @@ def save_report(
     'report.html'
     """
     target = require_path("path", path)
-    # Whatever writes it refuses a folder.
+    # Writing the file refuses a folder.
     ending = ".html" if target.is_dir() else ending_of_page("path", target)
     write_whole(target, report_page(result, action, recordings, rollout, ending).encode())
     return target

@@ -1,1 +1,1 @@
-"""Pictures of a report, drawn as SVG without a plotting library."""
+"""Draw the pictures of a report as SVG without a plotting library."""

@@ -1,4 +1,4 @@
-"""Long signals drawn with few points that look the same: nothing that sticks out is lost."""
+"""Reduce long signals to few points that look the same. Peaks are kept."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ Places = NDArray[np.int64]
 
 
 def outline(columns: Places, values: NDArray[np.float64]) -> Places:
-    """Choose the samples of a line that show how it looks: first, lowest, highest and last of each column.
+    """Choose the samples that preserve a line's look: first, lowest, highest and last of each column.
 
     Parameters
     ----------
     columns : ndarray of int, shape (n,)
-        The column of the picture that each sample falls into, in order: neighbours in the same column are together.
+        Column of the picture for each sample, in order: samples in the same column are adjacent.
     values : ndarray, shape (n,)
-        Finite.
+        Finite values.
 
     Returns
     -------
@@ -40,7 +40,7 @@ def outline(columns: Places, values: NDArray[np.float64]) -> Places:
 
 
 def distinct(across: Places, up: Places, cell: int) -> Places:
-    """Return the index of one point in each cell of a grid that has points: the others would lie upon it."""
+    """Return the index of one point in each occupied cell of a grid; other points there would be hidden."""
     width = int(up.max(initial=0)) // cell + 1
     _, index = np.unique((across // cell) * width + up // cell, return_index=True)
     return np.sort(index)

@@ -1,4 +1,4 @@
-"""The path of each kind of mark on two scales."""
+"""SVG paths for each kind of mark on two scales."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from jointid.report.drawing.decimation import distinct, outline
 from jointid.report.drawing.paths import area_path, bars_path, line_path, points_path, runs
 from jointid.report.drawing.scale import Places, Scale, drawable
 
-UNIT = 10  # places a unit of the picture; about a pixel
-_DENSE = 4  # samples a column, above which a line is drawn by its outline
-_MANY = 3000  # points, above which those that lie upon each other are drawn once
+UNIT = 10  # places per unit of the picture; a unit is about a pixel
+_DENSE = 4  # samples per column above which only a line's outline is drawn
+_MANY = 3000  # number of points above which overlapping points are drawn once
 
 
 def mark_path(mark: Mark, across: Scale, up: Scale) -> Html | None:
-    """Return a mark as an element, None where there is nothing to see."""
+    """Return a mark as an element; None if nothing is visible."""
     kind, path = _kind_and_path(mark, across, up)
     return element("path", class_=f"{kind} {mark.look}", d=path) if path else None
 
 
 def legend_sample(mark: Mark, across: int, up: int) -> Html:
-    """Return what the legend shows of a mark, around a place."""
+    """Return the legend's sample of a mark at a place."""
     kind = mark_kind(mark)
     paths = {
         "points": f"M{across + 20} {up}h0M{across + 90} {up}h0M{across + 160} {up}h0",
@@ -36,7 +36,7 @@ def legend_sample(mark: Mark, across: int, up: int) -> Html:
 
 
 def mark_kind(mark: Mark) -> str:
-    """Return the class that a mark has in the style sheet."""
+    """Return the mark's class in the style sheet."""
     if isinstance(mark, Level) or (isinstance(mark, Line) and mark.dashed):
         return "dashed"
     if isinstance(mark, Line) and mark.series:
@@ -112,7 +112,7 @@ def _band(mark: Band, across: Scale, up: Scale) -> str:
 
 def _shades(mark: Shade, across: Scale, up: Scale) -> str:
     start, stop = across.places(mark.start), across.places(mark.stop)
-    # Each at least a pixel wide; what then touches is one.
+    # Each is at least a pixel wide. Adjacent ones are merged.
     stop = np.maximum(stop, start + UNIT)
     apart = np.flatnonzero(start[1:] > np.maximum.accumulate(stop)[:-1] + UNIT) + 1
     if len(start) == 0:
@@ -124,6 +124,6 @@ def _shades(mark: Shade, across: Scale, up: Scale) -> str:
 
 
 def _is_dense(places: Places, across: Scale) -> bool:
-    """Whether there are more samples than the picture has room for, in the order of the axis."""
+    """Return whether there are more samples than the picture can show, in the order of the axis."""
     columns = (across.stop - across.start) // UNIT
     return len(places) > _DENSE * columns and bool((np.diff(places) >= 0).all())

@@ -1,4 +1,4 @@
-"""Path strings of SVG for places in whole tenths of a unit: short, exact, and written by one format."""
+"""SVG path strings for places in whole tenths of a unit: short, exact, and in one notation."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ Places = NDArray[np.int64]
 
 
 def runs(shown: NDArray[np.bool_]) -> Iterator[slice]:
-    """Yield the stretches of samples that are shown without a gap."""
+    """Yield the intervals of shown samples without a gap."""
     if shown.all():
         if len(shown):
             yield slice(0, len(shown))
@@ -22,7 +22,7 @@ def runs(shown: NDArray[np.bool_]) -> Iterator[slice]:
 
 
 def line_path(across: Places, up: Places) -> str:
-    """Return the path along these points; a single one is a dot."""
+    """Return the path along these points. A single point is a dot."""
     steps = np.column_stack([np.diff(across), np.diff(up)])
     steps = steps[(steps != 0).any(axis=1)]
     start = f"M{across[0]} {up[0]}"
@@ -30,7 +30,7 @@ def line_path(across: Places, up: Places) -> str:
 
 
 def points_path(across: Places, up: Places) -> str:
-    """Return a path of dots: lines of no length with round ends, which no scaling distorts."""
+    """Return a path of dots: lines of zero length with round ends, which scaling does not distort."""
     return ("M%d %dh0" * len(across)) % tuple(np.column_stack([across, up]).ravel().tolist())
 
 
@@ -41,7 +41,7 @@ def area_path(across: Places, low: Places, high: Places) -> str:
 
 
 def bars_path(left: Places, right: Places, top: Places, foot: int) -> str:
-    """Return the path around bars that stand on one line."""
+    """Return the path around bars with a common base line."""
     bars = zip(left.tolist(), right.tolist(), top.tolist(), strict=True)
     return "".join(f"M{a} {foot}V{up}H{b}V{foot}z" for a, b, up in bars)
 

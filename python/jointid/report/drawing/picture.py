@@ -1,4 +1,4 @@
-"""Panels below each other, with their axes and legends, as one SVG."""
+"""Draw panels below each other, with axes and legends, as one SVG."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from jointid.report.drawing.pointed_values import readouts
 from jointid.report.drawing.scale import Scale, drawable, limits
 from jointid.report.drawing.ticks import Ticks, superscript
 
-WIDTH = 560  # units of the picture
-# Tenths of a unit. Rooms for texts are for the large text of a narrow screen, see the style sheet.
+WIDTH = 560  # width of the picture in units
+# Tenths of a unit. The spaces for texts fit the large text of a narrow screen, see the style sheet.
 _LETTER = 105
 _NARROW, _BROAD = frozenset("iljtfrI,.:;'!|()[] -"), frozenset("mwMW%@−")
 _LINE = 210
@@ -23,21 +23,21 @@ _FOR_A_TICK = 330
 
 
 def drawn(panels: Sequence[Panel], title: str, description: str = "") -> Html:
-    """Draw panels with one axis across, as one picture.
+    """Draw panels with one horizontal axis, as one picture.
 
     Parameters
     ----------
     panels : sequence of Panel
-        From above; the lowest one's axis across is labelled.
+        Panels from top to bottom. The horizontal axis of the lowest one has labels.
     title : str
-        For those who do not see the picture, and as the name of the picture.
+        Name of the picture, also for screen readers.
     description : str
-        Follows what the axes show. Default: nothing.
+        Text after the description of the axes. Default: none.
 
     Returns
     -------
     Html
-        An ``svg`` element that scales with the page; the page has `style.STYLE`.
+        An ``svg`` element that scales with the page. The page must contain `style.STYLE`.
     """
     marks = [mark for panel in panels for mark in (*panel.marks, *panel.right)]
     logarithmic = panels[-1].logarithmic_across
@@ -100,12 +100,12 @@ def _range(marks: Sequence[Mark], logarithmic: bool = False) -> tuple[float, flo
 
 
 def _room(ticks: Sequence[Ticks]) -> int:
-    """How wide the numbers at an upright axis are."""
+    """Return the width of the numbers at a vertical axis."""
     return 80 + _LETTER * max(len(text) for each in ticks for text in (*each.texts, "0"))
 
 
 def _right_axis(across: Scale, up: Scale, ticks: Ticks, title: str, above: int) -> list[Html | str]:
-    """The axis at the right with its numbers, and its title above it."""
+    """Return the axis at the right with its numbers, and its title above it."""
     right = str(WIDTH * UNIT - 40)
     return [
         element("path", class_="axes", d=f"M{across.stop} {up.stop}V{up.start}"),
@@ -118,7 +118,7 @@ def _right_axis(across: Scale, up: Scale, ticks: Ticks, title: str, above: int) 
 
 
 def _axes(across: Scale, up: Scale, ticks: Ticks, title: str) -> list[Html | str]:
-    """Grid, axes, numbers at the ticks and the title of the axis across; without one, no numbers."""
+    """Return grid, axes, numbers at the ticks and the horizontal axis's title. Without a title, omit numbers."""
     below = _ticks_across(across)
     rows = up.places(ticks.values).tolist()
     columns = across.places(below.values).tolist()
@@ -150,12 +150,12 @@ def _rows(panel: Panel) -> tuple[float, ...]:
 
 
 def _range_of_rows(panel: Panel) -> tuple[float, float] | None:
-    """Room for the last row's marks, and for the first row's name."""
+    """Return the range with space for the last row's marks and the first row's name."""
     return (0.6 - len(panel.names), 0.75) if panel.names else None
 
 
 def _row_names(panel: Panel, across: Scale, up: Scale) -> list[Html | str]:
-    """Each row's name above it, cut where the picture ends."""
+    """Return each row's name above it, cut at the end of the picture."""
     room = across.stop - across.start - 80
     x, rows = str(across.start + 40), up.places(_rows(panel)).tolist()
     return [
@@ -165,7 +165,7 @@ def _row_names(panel: Panel, across: Scale, up: Scale) -> list[Html | str]:
 
 
 def _cut(text: str, room: int) -> str:
-    """A text with its middle left out where there is no room for it."""
+    """Return a text with its middle removed if it is too long."""
     if _width(text) <= room:
         return text
     kept = max(2, len(text) * room // _width(text) - 3)
@@ -173,7 +173,7 @@ def _cut(text: str, room: int) -> str:
 
 
 def _ticks_across(across: Scale) -> Ticks:
-    """As many ticks as their numbers have room for."""
+    """Return as many ticks as their numbers have space for."""
     for most in range(7, 2, -1):
         ticks = across.ticks(most)
         if len(ticks.texts) * _LETTER * (max(map(len, ticks.texts), default=0) + 1) <= (
@@ -191,7 +191,7 @@ def _axis_title(title: str, exponent: int) -> str:
 
 
 def _legend(panel: Panel, top: int) -> tuple[list[Html | str], int]:
-    """The labelled marks in rows as wide as the picture, and the place below them."""
+    """Return the labelled marks in rows as wide as the picture, and the place below them."""
     parts: list[Html | str] = []
     x, y = 40, top + _LINE
     labelled = [mark for mark in (*panel.marks, *panel.right) if mark.label]
@@ -210,7 +210,7 @@ def _legend(panel: Panel, top: int) -> tuple[list[Html | str], int]:
 
 
 def _width(text: str) -> int:
-    """About how wide a text is in a broad font."""
+    """Return the approximate width of a text in a wide font."""
     narrow, broad = sum(map(_NARROW.__contains__, text)), sum(map(_BROAD.__contains__, text))
     return _LETTER * len(text) + (_LETTER * (broad - narrow)) // 2
 
@@ -220,7 +220,7 @@ def _summary(
     ranges: Sequence[tuple[float, float]],
     across: tuple[float, float],
 ) -> str:
-    """In words: what the axes show and over which range, and what is drawn."""
+    """Return a description: the axes with their ranges, and the marks."""
     said = [f"Across: {panels[-1].across}, from {across[0]:.3g} to {across[1]:.3g}."]
     for panel, up in zip(panels, ranges, strict=True):
         drawn = "; ".join(_counted(mark) for mark in panel.marks if mark.label)

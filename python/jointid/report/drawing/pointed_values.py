@@ -1,4 +1,4 @@
-"""Values under the pointer, without a program: strips over a picture, each with the values there as its title."""
+"""Values under the pointer, without a script: strips over a picture, each with its values as title."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ _STRIPS = 80
 
 
 def readouts(panels: Sequence[Panel], across: Scale, top: int, foot: int) -> list[Html]:
-    """Return strips that cover panels with one axis across, each with what is drawn there.
+    """Return strips that cover panels with one horizontal axis. Each shows the values drawn there.
 
-    A line is read in the middle of a strip, of points the nearest one in it, of bars the one that stands there.
+    A line is read in the middle of a strip. Points give the nearest point in the strip, and bars the bar there.
 
     Parameters
     ----------
     panels : sequence of Panel
-        Those with named rows have no numbers to read.
+        The panels. Panels with named rows have no numbers to read.
     across : Scale
     top, foot : int
-        Where the panels begin and end [tenths of a unit].
+        Upper and lower end of the panels [tenths of a unit].
 
     Returns
     -------
     list of Html
-        None where nothing is drawn.
+        The strips; empty if nothing is drawn.
     """
     to, back = (np.log, np.exp) if across.logarithmic else (np.asarray, np.asarray)
     low, high = to(numbers([across.low, across.high])).tolist()
@@ -68,7 +68,7 @@ def readouts(panels: Sequence[Panel], across: Scale, top: int, foot: int) -> lis
 
 
 def _values(mark: Mark, middles: Array, width: float, to: Callable[[Array], Array]) -> Array | None:
-    """A mark's value in each strip; NaN where it has none, None for what shows none."""
+    """Return a mark's value in each strip; NaN without a value, None for a mark that has no values to show."""
     if isinstance(mark, Bars):
         edges, up = to(numbers(mark.edges)), numbers(mark.up)
         if len(up) == 0:
@@ -87,12 +87,12 @@ def _values(mark: Mark, middles: Array, width: float, to: Callable[[Array], Arra
 
 
 def _on_a_line(x: Array, y: Array, middles: Array) -> Array | None:
-    """Values of a line between its points; NaN in its gaps, None where it passes a place more than once."""
+    """Return the values of a line between its points; NaN in gaps, None if it passes a place more than once."""
     known = drawable(x) & drawable(y)
     if not known.any() or (np.diff(x[known]) < 0.0).any():
         return None
     values = np.interp(middles, x[known], y[known], left=np.nan, right=np.nan)
-    # A gap has no place of its own: what lies between its neighbours is in it.
+    # A gap has no position: the interval between its neighbours belongs to it.
     inside = np.flatnonzero(known)
     after = np.minimum(np.searchsorted(x[inside], middles), len(inside) - 1)
     before = np.maximum(after - 1, 0)
@@ -100,7 +100,7 @@ def _on_a_line(x: Array, y: Array, middles: Array) -> Array | None:
 
 
 def _nearest(x: Array, y: Array, middles: Array, width: float) -> Array | None:
-    """Values of the points that are nearest, in the strip itself; x increases."""
+    """Return the values of the nearest points in each strip; x must increase."""
     if len(x) == 0:
         return None
     after = np.minimum(np.searchsorted(x, middles), len(x) - 1)
@@ -112,7 +112,7 @@ def _nearest(x: Array, y: Array, middles: Array, width: float) -> Array | None:
 
 
 def _named(label: str, title: str) -> tuple[str, str]:
-    """A mark's name and unit: its label or what the axis shows."""
+    """Return a mark's name and unit: its label, or the title of the axis."""
     shown, _, unit = title.partition(" [")
     unit = unit.removesuffix("]")
     return label or shown, f" {unit}" if unit and unit != "1" else ""

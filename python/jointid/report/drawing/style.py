@@ -1,10 +1,10 @@
-"""The style sheet of pictures, for a light and a dark ground."""
+"""The style sheet of pictures, for a light and a dark background."""
 
 from __future__ import annotations
 
 from jointid.panels.palette import BAND, DARK, DASHES, LIGHT, LOOKS
 
-_WIDTH = 1.6  # of a line, in pixels
+_WIDTH = 1.6  # width of a line, in pixels
 
 
 def _variables(colours: dict[str, str]) -> str:
@@ -17,15 +17,15 @@ def _dashes(look: str) -> str:
 
 
 def colours(selector: str) -> str:
-    """Return the colours as variables of an element; a dark screen is served, paper stays white."""
+    """Return the colours as variables of an element. They follow a dark screen; paper stays white."""
     dark = (
         f"@media screen and (prefers-color-scheme: dark) {{ {selector} {{ {_variables(DARK)} }} }}"
     )
     return f"{selector} {{ color-scheme: light dark; {_variables(LIGHT)} }}\n{dark}\n"
 
 
-# Sizes of text are in tenths of a unit of the picture,
-# which is drawn smaller on a narrow screen: there the text is larger in the picture's units.
+# Sizes of text are in tenths of a unit of the picture. The picture is smaller on a narrow screen, so its text
+# is larger in units there.
 RULES = f"""
 svg {{ display: block; width: 100%; max-width: 46rem; height: auto; }}
 svg text {{ font: 110px system-ui, sans-serif; fill: var(--ink); stroke: none; }}

@@ -1,4 +1,4 @@
-"""Where an axis has its ticks, and what is written at them."""
+"""Places and labels of an axis's ticks."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from jointid.base.values import dataclass
 
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_DIGITS = 4  # behind the point; a label with more is written as a multiple of a power of ten
+_DIGITS = 4  # digits after the decimal point; a label with more is a multiple of a power of ten
 _LARGEST = 1e5
 
 
@@ -18,9 +18,9 @@ class Ticks:
     Attributes
     ----------
     values : tuple of float
-        In the axis's unit.
+        Values of the ticks, in the axis's unit.
     texts : tuple of str
-        What is written at them: the value over 10^exponent.
+        Labels of the ticks: the value over 10^exponent.
     exponent : int
     """
 
@@ -30,7 +30,7 @@ class Ticks:
 
 
 def linear_ticks(low: float, high: float, most: int) -> Ticks:
-    """Return at most so many round values (1, 2 or 5 times a power of ten apart) within two limits."""
+    """Return round values (1, 2 or 5 times a power of ten apart) within two limits, at most `most`."""
     step = 1.0
     values: tuple[float, ...] = ()
     power = math.floor(math.log10((high - low) / most))
@@ -46,7 +46,7 @@ def linear_ticks(low: float, high: float, most: int) -> Ticks:
 
 
 def logarithmic_ticks(low: float, high: float, most: int) -> Ticks:
-    """Return powers of ten within two positive limits, every n-th if they are many, also 2 and 5 if they are few."""
+    """Return powers of ten within two positive limits: every n-th if there are many, also 2 and 5 if there are few."""
     first, last = math.ceil(math.log10(low) - 1e-9), math.floor(math.log10(high) + 1e-9)
     stride = max(1, -(-(last - first + 1) // most))
     powers = range(first, last + 1, stride)
@@ -70,7 +70,7 @@ def superscript(power: int) -> str:
 
 
 def _written(values: tuple[float, ...], power: int) -> Ticks:
-    """Values that differ by multiples of 10^power, with as many digits as that needs."""
+    """Return ticks for values that differ by multiples of 10^power, with as many digits as needed."""
     largest = max(map(abs, values), default=0.0)
     exponent = 0
     if largest >= _LARGEST or (-power > _DIGITS and largest > 0.0):

@@ -1,1 +1,1 @@
-"""What a page is made of, as data: parts with headings, and blocks that no renderer has to know the result for."""
+"""A page as data: parts with headings, and blocks that do not depend on the kind of result."""

@@ -1,4 +1,4 @@
-"""A page as data: parts under headings, and what stands in them. A renderer turns it into HTML, Markdown or text."""
+"""A page as data: parts under headings, with blocks. A renderer converts it to HTML, Markdown or text."""
 
 from __future__ import annotations
 
@@ -8,31 +8,31 @@ from jointid.base.values import dataclass
 from jointid.panels.marks import Picture
 
 Look = Literal["open", "half", "folded"]
-"""How a part stands on a page: in full width, next to another half, or closed until it is wanted."""
+"""Layout of a part: in full width, next to another half, or folded until it is opened."""
 
 
 @dataclass(frozen=True, slots=True)
 class Bold:
-    """Words that stand out."""
+    """Emphasized words."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """Words that lead to a part of the same page, by the part's name."""
+    """A link to a part of the same page, by the part's name."""
 
     text: str
     part: str
 
 
 Run: TypeAlias = str | Bold | Link
-"""A stretch of words in one look."""
+"""Words with one look."""
 
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The sentence that a page begins with, in the colour of a level ("usable", …) if it has one."""
+    """The first sentence of a page, in the colour of a level ("usable", …) if it has one."""
 
     sentence: str
     level: str = ""
@@ -40,7 +40,7 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """Words in one paragraph."""
+    """A paragraph."""
 
     runs: tuple[Run, ...]
     muted: bool = False
@@ -48,7 +48,7 @@ class Paragraph:
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """One line of a list, with smaller lines below it; a finding has a severity."""
+    """One line of a list, with smaller lines below it. A finding has a severity."""
 
     runs: tuple[Run, ...]
     below: tuple[tuple[Run, ...], ...] = ()
@@ -64,15 +64,15 @@ class Items:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Rows of cells; the first cell names its row.
+    """Rows of cells. The first cell is the name of its row.
 
     Attributes
     ----------
     rows : tuple of tuple of Run
     head : tuple of str
-        Default: none, as for pairs of a label and a text.
+        Titles of the columns. Default: none, as for pairs of a label and a text.
     numbers : bool
-        Whether all cells but the first are numbers, which stand to the right. Default False.
+        Whether all cells except the first are numbers, aligned to the right. Default False.
     """
 
     rows: tuple[tuple[Run, ...], ...]
@@ -89,14 +89,14 @@ class Figure:
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """Lines to copy."""
+    """Lines that a reader can copy."""
 
     text: str
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Multiples:
-    """Alike small pictures, two in a row where there is room."""
+    """Small pictures of the same kind, two in a row if there is space."""
 
     pictures: tuple[Picture, ...]
 
@@ -106,15 +106,15 @@ Block: TypeAlias = Answer | Paragraph | Items | Table | Figure | Code | Multiple
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Part:
-    """What stands under one heading.
+    """Content under one heading.
 
     Attributes
     ----------
     heading : str
-        "": the part belongs to the one before it.
+        "": the part belongs to the part before it.
     blocks : tuple of Block
     name : str
-        For links on the page; unique. Default: none.
+        Name for links on the page; unique. Default: none.
     look : {"open", "half", "folded"}
     inner : tuple of Part
         Parts under smaller headings, below the blocks.
@@ -148,11 +148,11 @@ def pairs(rows: tuple[tuple[str, str], ...] | list[tuple[str, str]]) -> Table:
 
 
 def table_of(rows: list[list[str]] | list[tuple[str, ...]], numbers: bool = True) -> Table:
-    """Return rows of text as a table; the first is its head."""
+    """Return rows of text as a table. The first row is its head."""
     head, *others = rows
     return Table(tuple(tuple(row) for row in others), tuple(head), numbers)
 
 
 def paragraph(text: str, muted: bool = False) -> Paragraph:
-    """Return a paragraph of plain words."""
+    """Return a paragraph of plain text."""
     return Paragraph((text,), muted)

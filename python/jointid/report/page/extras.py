@@ -1,4 +1,4 @@
-"""What a page takes besides the result: how advice is worded, the recordings, a rollout."""
+"""Inputs of a page other than the result: wording of advice, recordings, a rollout."""
 
 from __future__ import annotations
 
@@ -22,22 +22,22 @@ def _no_parts(_result: Result, _extras: Extras) -> list[Part]:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Extras:
-    """What a page takes besides the result.
+    """Inputs of a page other than the result.
 
     Attributes
     ----------
     action : callable
-        Words the advice of a finding. Default: as at a Python prompt.
+        Returns the words of a finding's advice. Default: as at a Python prompt.
     recordings : tuple of Recording
-        That an estimate was made from, for pictures of their signals. Default: none.
+        Recordings of the estimate, for pictures of their signals. Default: none.
     rollout : Rollout or None
-        Of a servo's runs, for pictures of its closed loop. Default: none.
+        Rollout of a servo's runs, for pictures of its closed loop. Default: none.
     prefix : str
-        Stands before the names of parts, so that results on one page do not share them.
+        Prefix of the names of parts, which makes them unique if a page has several results.
     overview : Overview
-        Of the result that the page is made of.
+        Overview of the result on the page.
     parts_of : callable
-        Makes the parts of a result that this one consists of. Default: none.
+        Returns the parts of an inner result. Default: none.
     """
 
     action: Callable[[Action], str] = str

@@ -1,4 +1,4 @@
-"""Values in one cell: value, error and unit together."""
+"""Text of a table cell: value, error and unit together."""
 
 from __future__ import annotations
 

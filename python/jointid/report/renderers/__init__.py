@@ -1,4 +1,4 @@
-"""The formats of a report: one file for each, listed here by the ending of a file's name."""
+"""The formats of a report, one file for each, by file ending."""
 
 from pathlib import Path
 
@@ -10,7 +10,7 @@ RENDERERS = {
     ".md": "markdown",
     ".txt": "plain_text",
 }
-"""Ending → file; its `render` turns a `Page` into text."""
+"""File for each ending; its `render` converts a `Page` to text."""
 
 
 def ending_of_page(argument: str, path: Path) -> str:
@@ -19,7 +19,7 @@ def ending_of_page(argument: str, path: Path) -> str:
     Raises
     ------
     InputError
-        There is no such format; lists those that there are.
+        The format does not exist. The message lists the formats.
     """
     ending = path.suffix.lower()
     if ending not in RENDERERS:

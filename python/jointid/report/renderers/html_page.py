@@ -1,4 +1,4 @@
-"""A page as HTML that needs no other file."""
+"""Render a page as HTML without other files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from jointid.report.page.content import (
 )
 from jointid.report.renderers.style import STYLE
 
-_NARROW = 3  # columns that a phone shows without scrolling
+_NARROW = 3  # number of columns that a phone shows without scrolling
 
 
 def render(shown: Page) -> str:
@@ -36,7 +36,7 @@ def render(shown: Page) -> str:
 
 
 def html_parts(parts: Sequence[Part], level: int = 2) -> list[Html]:
-    """Return parts below each other, halves in pairs."""
+    """Return parts below each other, with halves in pairs."""
     made: list[Html] = []
     halves: list[Html] = []
     for part in parts:
@@ -53,7 +53,7 @@ def html_parts(parts: Sequence[Part], level: int = 2) -> list[Html]:
 
 
 def html_block(block: Block, heading: str = "") -> Html:
-    """Return one block; the heading above it names what scrolls."""
+    """Return one block. The heading above it is the name of scrolling areas."""
     match block:
         case Answer(sentence, level):
             look = f"verdict {level.replace(' ', '-')}".rstrip()
@@ -88,7 +88,7 @@ def _figure(caption: str, picture: Html, tag: str = "figure") -> Html:
 
 
 def _open(part: Part, level: int) -> list[Html]:
-    """A part in full width."""
+    """Return a part in full width."""
     return [*_heading(part, level), *_content(part, level)]
 
 
@@ -97,10 +97,10 @@ def _section(part: Part, level: int) -> Html:
 
 
 def _folded(part: Part, level: int) -> Html:
-    """A part that is closed until it is wanted."""
+    """Return a folded part."""
     summary = element("summary", element(f"h{level}", part.heading))
     named = {"id": part.name} if part.name else {}
-    # A link into what is inside opens it.
+    # A link to its content opens it.
     return element("details", summary, element("div", *_content(part, level), **named))
 
 
@@ -135,7 +135,7 @@ def _table(table: Table, heading: str) -> Html:
         element("th", name, scope="col", role="columnheader") if name else element("td")
         for name in table.head
     ]
-    # Roles, and labels for the narrow screen, where each row is a card: it has no columns then.
+    # Roles, and labels for the narrow screen, where each row is a card without columns.
     labels = table.head[1:] or ("",) * max((len(row) for row in table.rows), default=0)
     rows = [
         element(
@@ -157,7 +157,7 @@ def _table(table: Table, heading: str) -> Html:
     widest = max((len(row) for row in (*table.rows, table.head)), default=0)
     if widest <= _NARROW:
         return made
-    # What scrolls can be reached and scrolled by keyboard.
+    # The keyboard can reach and scroll this area.
     return element(
         "div", made, class_="wide", tabindex="0", role="region", aria_label=heading or "table"
     )

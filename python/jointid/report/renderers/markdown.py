@@ -1,4 +1,4 @@
-"""A page as Markdown, for a notebook's cell, an issue or a wiki; pictures are their captions."""
+"""Render a page as Markdown, for a notebook cell, an issue or a wiki. Captions replace pictures."""
 
 from __future__ import annotations
 
@@ -87,17 +87,17 @@ def _runs(runs: Iterable[Run]) -> str:
 
 def _run(run: Run) -> str:
     if isinstance(run, Link):
-        return ""  # the part that it leads to follows
+        return ""  # the linked part follows
     if isinstance(run, str):
         return _escaped(run)
-    # Markdown takes stars for bold next to a letter only.
+    # Markdown reads stars as bold only next to a letter.
     inner = run.text.strip()
     before, _, after = run.text.partition(inner)
     return f"{before}**{_escaped(inner)}**{after}"
 
 
 def _plain(text: str) -> str:
-    """A text on one line in which nothing is Markdown's."""
+    """Return a text on one line without Markdown syntax."""
     return " ".join(_escaped(text).split())
 
 

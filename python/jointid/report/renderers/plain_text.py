@@ -1,4 +1,4 @@
-"""A page as plain text, for a terminal or a mail; pictures are their captions."""
+"""Render a page as plain text, for a terminal or a mail. Captions replace pictures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _COLUMNS = 100
 
 
 def render(shown: Page) -> str:
-    """Return a page as plain text of at most 100 columns, but for tables and code."""
+    """Return a page as plain text of at most 100 columns, except for tables and code."""
     lines = [shown.title, "=" * len(shown.title), "", *_parts(shown.parts, "-")]
     if shown.footer:
         lines += [*wrap(shown.footer, _COLUMNS), ""]
@@ -80,6 +80,6 @@ def _indented(text: str) -> list[str]:
 
 
 def _text(runs: Iterable[Run]) -> str:
-    # A link's words say nothing without it: the part that it leads to follows.
+    # A link's words are omitted, because the linked part follows.
     texts = (run if isinstance(run, str) else run.text for run in runs if not isinstance(run, Link))
     return " ".join("".join(texts).split())

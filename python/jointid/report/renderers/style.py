@@ -1,4 +1,4 @@
-"""The style sheet of all pages: one width, the answer and the values on the first screen, light and dark."""
+"""The style sheet of all pages: one width, answer and values on the first screen, light and dark."""
 
 from __future__ import annotations
 
@@ -50,6 +50,6 @@ footer {{ margin-top: 2rem; }}
 @media print {{ .halves, .multiples {{ display: block; }} }}
 """
 STYLE = f"{style.colours(':root')}body {{ {_FRAME} margin: 1rem auto; }}{_RULES}"
-"""Of a page."""
+"""Style sheet of a page."""
 NOTEBOOK = f"{style.colours('.jointid')}.jointid {{ {_FRAME} }}\n.jointid {{ {_RULES} }}"
-"""Of one element among others, as in a notebook: nothing outside it changes."""
+"""Style sheet of one element among others, as in a notebook. It changes nothing outside the element."""

@@ -1,7 +1,7 @@
-"""The sections of all pages: one file for each, listed here in the order of a page.
+"""The sections of all pages, one file for each, in the order of a page.
 
-A section's file has `content(result, extras)`, which returns the parts of the page that it fills. A new one is its file
-and a row here: its name, and the kinds of result that it applies to.
+A section's file has `content(result, extras)`, which returns its parts of the page. A new section needs its
+file and a row here: its name, and the kinds of result that it applies to.
 """
 
 from __future__ import annotations
@@ -39,6 +39,6 @@ SECTIONS: dict[str, tuple[str, ...]] = {
     "convergence": ("estimate",),
     "values_to_copy": ("estimate",),
 }
-"""Section → kinds of result that it applies to."""
+"""Kinds of result for each section."""
 LAST_IN_NOTEBOOK = "findings"
-"""A notebook shows the sections up to this one."""
+"""Last section in a notebook."""

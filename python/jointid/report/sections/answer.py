@@ -1,4 +1,4 @@
-"""What a page begins with: the verdict and what it means for each purpose, or the answer in a sentence."""
+"""First section: the verdict and its meaning for each purpose, or the answer in a sentence."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _NAMES = 6  # parameters of one purpose; a robot may have a hundred
 
 
 def content(_result: Result, extras: Extras) -> list[Part]:
-    """The verdict with its uses and its main reason, or the sentences of the answer."""
+    """Return the verdict with its uses and its main reason, or the sentences of the answer."""
     seen = extras.overview
     blocks: list[Block] = []
     if seen.verdict is not None:
@@ -42,7 +42,7 @@ def content(_result: Result, extras: Extras) -> list[Part]:
 def verdict_blocks(
     verdict: Verdict, findings: Sequence[Finding] = (), extras: Extras | None = None
 ) -> list[Block]:
-    """Whether the values may be used, for what, and why not without care."""
+    """Return whether the values may be used, for which purpose, and the reasons for care."""
     blocks: list[Block] = [Answer(f"{verdict.level.capitalize()}.", verdict.level)]
     uses = verdict.uses.values()
     if len({use.level for use in uses}) > 1 or any(use.parameters for use in uses):
@@ -57,7 +57,7 @@ def verdict_blocks(
 
 
 def _reasons(verdict: Verdict, findings: Sequence[Finding], extras: Extras | None) -> list[Block]:
-    """The first reason with what to do about it, and each other one that is not among the findings."""
+    """Return the first reason with its advice, and the other reasons that are not findings."""
     titles = {found.title: found for found in findings}
     blocks: list[Block] = []
     for number, reason in enumerate(verdict.reasons):

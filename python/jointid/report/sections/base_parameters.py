@@ -1,4 +1,4 @@
-"""Folded: the combinations of a robot's inertial parameters that motion shows."""
+"""Folded section: the combinations of a robot's inertial parameters that motion shows."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.robot.result.result import RobotEstimate
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The table; nothing where the inertia was not identified."""
+    """Return the table; empty if the inertia was not identified."""
     found = cast("RobotEstimate", result).base_parameters.values()
     if not found:
         return []

@@ -1,4 +1,4 @@
-"""A study: what its trials found, as pictures, and each cell in a row."""
+"""Section of a study: results of its trials as pictures, and one row per cell."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.study.summary import Summary, summary_notes, summary_texts
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The pictures, then the table."""
+    """Return the pictures and then the table."""
     study = cast("Study", result)
     summary = study.summary()
     head, rows = summary_texts(summary)
@@ -27,7 +27,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 
 def _meaning(summary: Summary) -> str:
-    """What the table's numbers are."""
+    """Return the meaning of the table's numbers."""
     if any(cell.bias for cell in summary.cells):
         return "Parameters: mean error ± standard deviation over the trials [% of the truth]."
     return "Parameters: mean ± standard deviation over the trials."

@@ -1,4 +1,4 @@
-"""The search, generation by generation."""
+"""Section with the search, generation by generation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The picture; nothing where the search has none."""
+    """Return the picture; empty if the search has none."""
     estimate = cast("Estimate", result)
     if estimate.convergence is None:
         return []

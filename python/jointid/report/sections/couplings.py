@@ -1,4 +1,4 @@
-"""What the joints explain of each other's residuals."""
+"""Section with the residuals that joints explain of each other."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The sentences, and a table where a joint explains something of another."""
+    """Return the sentences, and a table if a joint explains a part of another one's residual."""
     joints = cast("JointEstimates", result)
     blocks: list[Block] = [
         Items(tuple(Item((line,)) for line in couplings(joints))),
@@ -34,7 +34,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 
 def _shares(result: JointEstimatesRecord) -> Table:
-    """One row for each joint, one column for each other one that explains something."""
+    """Return one row for each joint, and one column for each joint that explains a part of another."""
     explaining = {share.joint for each in result.results.values() for share in each.others}
     others = [name for name in result.results if name in explaining]
     others += sorted(explaining - set(others))  # recorded, but not identified

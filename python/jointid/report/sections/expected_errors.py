@@ -1,4 +1,4 @@
-"""How well a designed motion will identify the joint."""
+"""Section with the expected errors of a designed motion."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.report.page.wording import value_cell
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The table: value, expected error and unit in one cell."""
+    """Return the table: value, expected error and unit in one cell."""
     design = cast("Design", result)
     quantities = extras.overview.parameters
     columns = {"value ± expected error": [value_cell(each) for each in quantities]}

@@ -1,4 +1,4 @@
-"""Folded: how well the result explains the data, what it was made from, and with which settings."""
+"""Folded section: quality of the fit, data and settings."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ _BASIS = {"estimate": "Recording", "robot": "Recording", "servo": "Recording"}
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """One folded part for each that has lines."""
+    """Return one folded part for each group of facts with lines."""
     seen = extras.overview
     return [
         Part(heading, (pairs(lines),), f"{extras.prefix}{name}", "folded")

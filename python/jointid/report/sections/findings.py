@@ -1,4 +1,4 @@
-"""The findings: what, what to do, why."""
+"""Section with the findings: problem, advice and reason."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SHOWN = {"info": "note"}
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """All findings, the most severe first."""
+    """Return all findings, with the most severe first."""
     found = extras.overview.findings
     pictures = _pictures(result, extras) if kind_of(result) == "estimate" else {}
     lines = tuple(_item(each, pictures, extras) for each in found)
@@ -34,7 +34,7 @@ def _item(found: Finding, pictures: dict[str, str], extras: Extras) -> Item:
 
 
 def _pictures(result: Result, extras: Extras) -> dict[str, str]:
-    """The part of the page that shows each kind of finding."""
+    """Return the part of the page that shows each kind of finding."""
     from jointid.identification.warnings.registry import finding_types
 
     searched = getattr(result, "convergence", None) is not None

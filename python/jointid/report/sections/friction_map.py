@@ -1,4 +1,4 @@
-"""The friction map: what the recording shows, and the identified line with its band."""
+"""Section with the friction map: measured windows, and the identified line with its band."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The picture; nothing for an estimate without windows."""
+    """Return the picture; empty for an estimate without windows."""
     estimate = cast("Estimate", result)
     if not estimate.windows.start.size:
         return []

@@ -1,4 +1,4 @@
-"""The friction of each joint as small pictures, two in a row, the joint with the largest residual first."""
+"""Section with the friction of each joint as small pictures, two in a row, largest residual first."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from jointid.robot.result.result import RobotEstimate
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The pictures; nothing where no joint has any."""
+    """Return the pictures; empty if no joint has any."""
     if kind_of(result) == "robot":
         found = _of_robot(cast("RobotEstimate", result))
     else:

@@ -1,4 +1,4 @@
-"""The results that a result consists of: the winner's estimate of a comparison, each joint's, a session's last."""
+"""Section with the inner results: a comparison's chosen model, each joint, or a session's last estimate."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ _HEADING = {"joints": "Joint {}", "commissioning": "Identified in {}"}
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """Each inner result under its name; several are folded."""
+    """Return each inner result under its name. Several results are folded."""
     inner = extras.overview.inner
     parts = []
     for number, (name, each) in enumerate(inner.items()):
@@ -25,5 +25,5 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 
 def place_of(number: int, extras: Extras) -> str:
-    """The name of the part that shows an inner result, by its number: names of joints may look alike in a link."""
+    """Return the name of the part with an inner result, by number, because joints' names may be equal in a link."""
     return f"{extras.prefix}of-{number + 1}"

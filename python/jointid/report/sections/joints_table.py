@@ -1,4 +1,4 @@
-"""The joints of a robot: one row each, value and error in one cell."""
+"""Section with a robot's joints: one row each, value and error in one cell."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from jointid.robot.result.result import RobotEstimate
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The table."""
+    """Return the table."""
     if kind_of(result) == "robot":
         robot = cast("RobotEstimate", result)
         head, rows = robot_tables.head(robot), robot_tables.rows(robot)

@@ -1,4 +1,4 @@
-"""How near the signals of a session's runs came to its limits."""
+"""Distance of a session's signals from its limits."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _UNITS = {
 
 
 def margin_rows(runs: Sequence[Recording]) -> list[list[str]]:
-    """Return signal, largest value, limit and share of it; the first row is the head, alone without limits."""
+    """Return signal, largest value, limit and used share. The first row is the head; without limits it is alone."""
     rows = [["signal", "largest", "limit", "share of the limit"]]
     limits = runs[0].metadata.get("limits", {})
     slides = runs[0].kind == "prismatic"
@@ -43,13 +43,13 @@ def margin_rows(runs: Sequence[Recording]) -> list[list[str]]:
 
 
 def _share_of_range(low: float, high: float, least: float, most: float) -> float:
-    """How far from the middle of the range towards its nearer end: 1 at the end."""
+    """Return the used share of the distance from the middle of the range to its nearer end; 1 at the end."""
     middle, half = 0.5 * (least + most), 0.5 * (most - least)
     return max(middle - low, high - middle) / half
 
 
 def _reached(run: Recording, name: str) -> tuple[float, float] | None:
-    """Lowest and highest value of a signal, None where the recording lacks it."""
+    """Return the lowest and highest value of a signal; None if the recording lacks it."""
     values: Any = None
     if name == "tracking_error":
         values = None if run.reference is None else run.position - run.reference

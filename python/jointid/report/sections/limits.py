@@ -1,4 +1,4 @@
-"""How near a designed motion comes to its limits, and what it assumes."""
+"""Section with a designed motion's use of its limits, and its assumptions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """Two lists."""
+    """Return the two lists."""
     design = cast("Design", result)
     assumptions = (*improved(design), assumed(design), judged_with(design))
     return [

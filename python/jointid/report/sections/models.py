@@ -1,4 +1,4 @@
-"""What a comparison compared: the winner and why, and how well each candidate predicts what it has not seen."""
+"""Section of a comparison: the chosen model with the reason, and each candidate's error on held-out data."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _HEAD = ("model", "held-out residual", "remark")
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The table next to the picture, then how it was compared."""
+    """Return the table next to the picture, and then the method of the comparison."""
     tables, below, picture = {
         "comparison": _of_joint,
         "robot comparison": _of_robot,
@@ -49,7 +49,7 @@ def _of_joint(result: Result) -> tuple[list[Block], list[Block], Picture]:
 
 
 def _left_out(settings: Mapping[str, Any]) -> list[Block]:
-    """What could not be compared, with the reasons."""
+    """Return the candidates that could not be compared, with the reasons."""
     left = settings["left_out"].items()
     if not left:
         return []

@@ -1,4 +1,4 @@
-"""A designed motion: position and velocity within their limits, and where friction is sampled."""
+"""Section with a designed motion: position and velocity within their limits, and sampled friction."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The pictures."""
+    """Return the pictures."""
     design = cast("Design", result)
     prefix = extras.prefix
     return [

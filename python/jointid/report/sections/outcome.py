@@ -1,4 +1,4 @@
-"""What to do with the outcome of a session."""
+"""Section with the next step after a session."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from jointid.report.page.extras import Extras
 if TYPE_CHECKING:
     from jointid.commissioning.result import Commissioning
 
-_SMALL = 1.2  # a tracking error that fell by less did not get better
+_SMALL = 1.2  # smallest ratio of tracking errors that counts as an improvement
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """One sentence; none where nothing is to be done."""
+    """Return one sentence; empty if there is no next step."""
     said = next_step(cast("Commissioning", result), extras.action)
     return [Part("", (paragraph(said),))] if said else []
 
 
 def next_step(result: Commissioning, action: Callable[[Action], str] = str) -> str:
-    """What to do with the outcome, in a sentence."""
+    """Return the next step, in a sentence."""
     if any(run.recording.metadata.get("stop") for run in result.runs):
         return "Next: find out why the limit was reached before the joint moves again."
     if not result.estimates:

@@ -1,4 +1,4 @@
-"""A servo's runs or a robot's joints as logged and as simulated, the largest error first."""
+"""Section with a servo's runs or a robot's joints, logged and simulated, largest error first."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from jointid.panels.rollout import rolled_out
 from jointid.report.page.content import Block, Figure, Multiples, Part, Table, paragraph
 from jointid.report.page.extras import Extras
 
-_MOST = 16  # runs with a picture
+_MOST = 16  # number of runs with a picture
 _SERVO = (
     "Each run starts from its logged initial state; only the reference position, the supply, and when the motor is "
     "driven come from the log."
@@ -21,7 +21,7 @@ _DRIVEN = "The position loop moves the arm; only the wanted positions and the in
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The runs of a servo, the worst one next to the values, or a robot's joints; nothing without a rollout."""
+    """Return the runs of a servo, the worst one next to the values, or a robot's joints; empty without a rollout."""
     rollout = cast("Rollout", result) if kind_of(result) == "rollout" else extras.rollout
     if rollout is None:
         return []

@@ -1,4 +1,4 @@
-"""What happened on the bench: limits, stops, timing, the drive."""
+"""Section with the course of a session: limits, stops, timing, the drive."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """Limits and stops; timing and drive, folded, where they are known."""
+    """Return limits and stops, and if known timing and drive, folded."""
     from jointid.commissioning.result import TIMING, timing_rows
 
     session = cast("Commissioning", result)
@@ -39,7 +39,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 
 def _stops(session: Commissioning) -> tuple[Block, ...]:
-    """Whether a run ended before its time, and whether the motor is off."""
+    """Return whether a run ended early, and whether the motor is off."""
     blocks: list[Block] = [
         paragraph(f"{run.name}: {reason}.")
         for run in session.runs

@@ -1,4 +1,4 @@
-"""The signals as recorded, with what the estimate left out shaded, and the residual over the position."""
+"""Section with the recorded signals, with unused parts shaded, and the residual over position."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from jointid.panels.recorded import left_out, residual_over_position, signals
 from jointid.report.page.content import Block, Figure, Part, paragraph
 from jointid.report.page.extras import Extras
 
-_MOST = 4  # recordings with a picture of their own
+_MOST = 4  # number of recordings with their own picture
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """Nothing without the recordings.
+    """Return the pictures; empty without the recordings.
 
     Raises
     ------
     InputError
-        The estimate was made from others.
+        The estimate was made from other recordings.
     """
     estimate, recordings = cast("Estimate", result), extras.recordings
     if not recordings:

@@ -1,4 +1,4 @@
-"""How well a session's runs followed their reference."""
+"""Section with the tracking error of a session's runs."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """Picture and table of the runs; what was assumed and what was identified."""
+    """Return picture and table of the runs, and the assumed and identified values."""
     from jointid.commissioning.result import run_rows
 
     session = cast("Commissioning", result)
@@ -30,7 +30,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 
 def _identified(session: Commissioning) -> Table:
-    """What was assumed and what the last cycle found, with the truth of an emulated joint."""
+    """Return the assumed values and those of the last cycle, with the truth of an emulated joint."""
     from jointid.commissioning.result import parameter_rows
 
     head, *rows = parameter_rows(session)

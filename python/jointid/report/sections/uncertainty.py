@@ -1,4 +1,4 @@
-"""Folded: intervals, systematic parts, what other windows change, and which values resemble each other."""
+"""Folded section: intervals, systematic parts, effect of other windows, and correlated values."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The tables."""
+    """Return the tables."""
     parameters = cast("Estimate | ServoEstimate", result).parameters
     found = [p for p in parameters.values() if p.vary]
     blocks: list[Block] = [_intervals(found)]

@@ -1,4 +1,4 @@
-"""The values of a result: value, error and unit in one cell."""
+"""Section with the values of a result: value, error and unit in one cell."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ _EXPLAINED = (
     "estimate",
     "servo",
     "online",
-)  # the uncertainty says what their parameters are, or a joint file
+)  # the uncertainty section, or a joint file, describes their parameters
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The table of the values; columns that no value fills are left out."""
+    """Return the table of the values. Empty columns are omitted."""
     quantities = extras.overview.parameters
     if not quantities:
         return []
@@ -44,7 +44,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
 
 
 def _note(shown: Mapping[str, list[str]]) -> list[Block]:
-    """What the two errors cover, where both are shown."""
+    """Return the meaning of the two errors, if both are shown."""
     if "± systematic" not in shown:
         return []
     return [

@@ -1,4 +1,4 @@
-"""What a reader takes away: the values as a joint file and as a table, and the call that finds them again."""
+"""Section with values to copy: a joint file, a table, and the call that finds them again."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """The blocks, folded."""
+    """Return the blocks, folded."""
     estimate = cast("Estimate", result)
     blocks = (
         paragraph("As a joint file has them, with all digits:"),
@@ -38,7 +38,7 @@ def joint_file_lines(estimate: Estimate) -> str:
 
 
 def table_lines(estimate: Estimate) -> str:
-    """Return values, standard errors and 95 % intervals as comma-separated lines; empty: there is none."""
+    """Return values, standard errors and 95 % intervals as comma-separated lines. Missing values are empty."""
     lines = ["name,value,stderr,lower,upper,unit"]
     for p in estimate.parameters.values():
         numbers = (p.value, p.stderr, *(p.interval or (None, None)))
@@ -49,7 +49,7 @@ def table_lines(estimate: Estimate) -> str:
 
 
 def program(estimate: Estimate) -> str:
-    """Return the lines of Python that find the same values in the same recordings.
+    """Return the Python lines that find the same values in the same recordings.
 
     Parameters
     ----------
@@ -58,17 +58,17 @@ def program(estimate: Estimate) -> str:
     Returns
     -------
     str
-        With the settings that were chosen by themselves; the joint is the one that `identify` was given.
+        The lines, with the settings that were chosen automatically. The joint is the argument of `identify`.
     """
     settings = estimate.settings
     windows = "cumulative" if settings.get("cumulative") else settings["windows"]
     runs = settings["recordings"]
     what = "recording" if len(runs) == 1 else "recordings"
-    # In one line: a name must not become a line of the program.
+    # In one line, so that a name cannot become a line of the program.
     named = ", ".join(
         f"{' '.join(str(run['name'] or 'unnamed').split())} ({run['fingerprint']})" for run in runs
     )
-    # Own terms are in the model; the settings' terms are those of the core.
+    # Own terms are in the model. The settings list the core's terms.
     found = {**settings, "model": str(model_of(settings)), "windows": windows, "terms": None}
     stated = {name: found.get(name) for name in options_of(ProblemOptions)}
     arguments = [f"    {name}={value!r}," for name, value in stated.items() if value is not None]
@@ -97,5 +97,5 @@ def _changed(genetic: Mapping[str, Any]) -> str:
 
 
 def _key(name: str) -> str:
-    """A name as a key of TOML: bare where that is allowed."""
+    """Return a name as a TOML key: without quotes if TOML allows it."""
     return name if name.replace("_", "").isalnum() and name.isascii() else f'"{name}"'

@@ -1,4 +1,4 @@
-"""Measured and fitted windows, and what is left over velocity."""
+"""Section with measured and fitted windows, and the residual over velocity."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.report.page.extras import Extras
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """Two pictures next to each other; nothing for an estimate without windows."""
+    """Return two pictures next to each other; empty for an estimate without windows."""
     estimate = cast("Estimate", result)
     if not estimate.windows.start.size:
         return []

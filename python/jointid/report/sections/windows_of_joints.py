@@ -1,4 +1,4 @@
-"""Folded: measured and fitted torque of each joint of a robot, and what is left."""
+"""Folded section: measured and fitted torque of each joint of a robot, and the residual."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from jointid.robot.result.result import RobotEstimate
 
 
 def content(result: Result, extras: Extras) -> list[Part]:
-    """One part for each joint, the largest residual first."""
+    """Return one part for each joint, largest residual first."""
     estimate = cast("RobotEstimate", result)
     joints = sorted(estimate.joints.values(), key=lambda joint: -joint.relative_residual)
     parts = tuple(
