@@ -1,5 +1,5 @@
-"""A local page: drop a log, fix its columns and units, identify, compare, and export. No analysis is made here.
+"""A local page: load a log, set its columns and units, identify, compare, and export. The analysis runs in `worker`.
 
-`call` holds the user's input, `worker` is the process that computes, `guard` decides who may talk to the page, `page`
-and its siblings show the steps, and `serving` runs the server.
+`call` holds the user's input, `worker` is the process that computes, and `guard` controls access to the page.
+`page` and the modules of its steps draw the page, and `serving` runs the server.
 """

@@ -1,4 +1,4 @@
-"""The user's input on the page: a file, how to read it, the joint, the settings, and parts to leave out."""
+"""The user's input on the page: a file, its columns, the joint, the settings, and parts to leave out."""
 
 from __future__ import annotations
 
@@ -18,28 +18,28 @@ if TYPE_CHECKING:
     from jointid.estimate.estimate import Estimate
     from jointid.recording.recording import Recording
 
-# As `Action` says; other arguments replace those of the call.
+# As in `Action`. Other arguments replace those of the call.
 _MERGED = ("columns", "units", "scale", "parameters", "side")
-_FEWEST = 50  # samples of a piece between two stretches that are left out
+_FEWEST = 50  # smallest number of samples between two excluded stretches
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Call:
-    """One identification, as a user would write it: ``identify(load(file, …), joint, …)``.
+    """One identification, as a user writes it: ``identify(load(file, …), joint, …)``.
 
     Attributes
     ----------
     file : Path
-        Where the recording is.
+        File with the recording.
     name : str
-        What the user calls it; "" for the file's name.
+        The user's name of the file; "" for the file's own name.
     load : mapping
         Arguments of `load`.
     joint : Joint or None
     identify : mapping
         Arguments of `identify`.
     left_out : tuple of (float, float)
-        Stretches of the recording's time [s] that are not used.
+        Stretches of time [s] in the recording that are not used.
     """
 
     file: Path
@@ -50,7 +50,7 @@ class Call:
     left_out: tuple[tuple[float, float], ...] = ()
 
     def obey(self, action: Action) -> Call | None:
-        """Return the call with the action's arguments; None where no program can do what it says."""
+        """Return the call with the action's arguments; None if a program cannot do the action."""
         if action.kind != "call" or _unknown(action.arguments):
             return None
         if action.function == "load":
@@ -62,18 +62,18 @@ class Call:
         return None
 
     def recording(self) -> Recording:
-        """Return the recording, whole."""
+        """Return the complete recording."""
         from jointid.recording.readers.loading import load
 
         return load(self.file, **{"name": self.name or None, **self.load})
 
     def recordings(self) -> list[Recording]:
-        """Return the pieces of the recording that are left.
+        """Return the remaining pieces of the recording.
 
         Raises
         ------
         InputError
-            The file cannot be read, or nothing is left.
+            The file cannot be read, or no samples remain.
         """
         whole = self.recording()
         if not self.left_out:
@@ -91,16 +91,16 @@ class Call:
         Parameters
         ----------
         recordings : sequence of Recording, optional
-            As `recordings` returned them. Default: they are read.
+            Result of `recordings`. Default: they are read.
         **more
-            Further arguments of `identify`; they replace those of the call.
+            Further arguments of `identify`, which replace those of the call.
         """
         from jointid.identification.identification import identify
 
         return identify(recordings or self.recordings(), self.joint, **{**self.identify, **more})
 
     def _kept_of(self, whole: Recording) -> list[tuple[float | None, float | None]]:
-        """The stretches that are left, without those of a few samples."""
+        """Return the remaining stretches, without those of a few samples."""
         time, found = whole.time, []
         for start, stop in kept(self.left_out):
             first = 0 if start is None else int(np.searchsorted(time, start))
@@ -115,7 +115,7 @@ class Call:
         Parameters
         ----------
         whole : Recording
-            As `recording` returns it.
+            Result of `recording`.
         """
         lines = ["import jointid as jid", ""]
         stated = "".join(f", {name}={value!r}" for name, value in self.load.items())
@@ -142,7 +142,7 @@ class Call:
 def kept(
     left_out: tuple[tuple[float, float], ...],
 ) -> list[tuple[float | None, float | None]]:
-    """Return the stretches [s] between those that are left out; None for the recording's begin and end.
+    """Return the stretches [s] between the excluded stretches; None for the start and end of the recording.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Pictures of the page, as options of Apache ECharts: signals over time, and windows, linked."""
+"""Pictures of the page, as options of Apache ECharts: signals over time, and linked pictures of windows."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 Stretch = tuple[float, float]
 
 _SHOWN = ("position", "velocity", "torque", "motor_torque", "current", "sensor")
-_POINTS = 1200  # of a line; more are not seen
-# Variables of the style sheet: the drawings are SVG, and follow a change from light to dark.
+_POINTS = 1200  # points of a line; more are not visible
+# Variables of the style sheet: the drawings are SVG and adapt when light changes to dark.
 _TEXT, _MEASURED, _LINE, _SECOND = "var(--ink)", "var(--measured)", "var(--second)", "var(--fourth)"
 _CHOSEN, _OUT, _GRID = "var(--fitted)", "var(--measured)", "var(--grid)"
 _TOOLTIP = {
@@ -31,7 +31,7 @@ _HEIGHT = 120  # pixels of a signal's panel
 
 
 def outlined(time: Array, values: Array, points: int = _POINTS) -> list[list[float]]:
-    """Return a line's points, or of a long one the smallest and the largest value of each part, in their order."""
+    """Return a line's points. For a long line, return the minimum and the maximum of each part, in order."""
     if len(time) <= points:
         return _pairs(time, values)
     edges = np.linspace(0, len(time), points // 2 + 1).astype(int)
@@ -43,12 +43,12 @@ def outlined(time: Array, values: Array, points: int = _POINTS) -> list[list[flo
 
 
 def signals_height(recording: Recording) -> int:
-    """Height of the picture of signals in pixels."""
+    """Return the height of the picture of signals in pixels."""
     return _HEIGHT * len(_signals(recording)) + 70
 
 
 def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict[str, Any]:
-    """Each signal over time, with what is left out in grey; a stretch can be brushed."""
+    """Return each signal over time, with excluded stretches in grey. A stretch can be selected."""
     names = _signals(recording)
     limits = {"min": float(recording.time[0]), "max": float(recording.time[-1])}
     grey = {
@@ -57,7 +57,7 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
         "data": [[{"xAxis": start}, {"xAxis": stop}] for start, stop in left_out],
     }
     last = len(names) - 1
-    even = float(f"{limits['max']:.3g}") == limits["max"]  # its label is short
+    even = float(f"{limits['max']:.3g}") == limits["max"]  # the label is short
     return {
         "animation": False,
         "textStyle": {"color": _TEXT},
@@ -122,7 +122,7 @@ def signals_options(recording: Recording, left_out: tuple[Stretch, ...]) -> dict
 
 
 def signals_text(recording: Recording) -> str:
-    """The picture of signals in words."""
+    """Return the picture of signals in words."""
     spans = ", ".join(
         f"{name} from {_span(getattr(recording, name))} {shown_unit(name, recording.kind)}"
         for name in _signals(recording)
@@ -131,12 +131,12 @@ def signals_text(recording: Recording) -> str:
 
 
 def friction_options(estimate: Estimate, brushed: Stretch | None = None) -> dict[str, Any]:
-    """Friction map; windows inside the brushed stretch stand out."""
+    """Return the friction map. Windows in the selected stretch are highlighted."""
     windows, kind = estimate.windows, str(estimate.settings["kind"])
     whole = whole_windows(windows)
     inside = _inside(_centre(estimate), brushed)
     curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max()), 100))
-    rest = len(curve.velocity) // 2  # friction takes any value there: two curves
+    rest = len(curve.velocity) // 2  # friction can have any value at rest, so there are two curves
     return _picture(
         f"velocity [{shown_unit('velocity', kind)}]",
         f"friction [{torque_unit(kind)}]",
@@ -165,7 +165,7 @@ def friction_options(estimate: Estimate, brushed: Stretch | None = None) -> dict
 
 
 def friction_text(estimate: Estimate) -> str:
-    """The friction map in words."""
+    """Return the friction map in words."""
     windows, kind = estimate.windows, str(estimate.settings["kind"])
     curve = estimate.friction(map_velocities(float(np.abs(windows.velocity).max()), 100))
     return (
@@ -176,7 +176,7 @@ def friction_text(estimate: Estimate) -> str:
 
 
 def residual_options(estimate: Estimate, brushed: Stretch | None = None) -> dict[str, Any]:
-    """Residuals over time; windows inside the brushed stretch stand out."""
+    """Return the residuals over time. Windows in the selected stretch are highlighted."""
     centre, residual = _centre(estimate), _residual(estimate)
     inside = _inside(centre, brushed)
     return _picture(
@@ -190,7 +190,7 @@ def residual_options(estimate: Estimate, brushed: Stretch | None = None) -> dict
 
 
 def residual_text(estimate: Estimate) -> str:
-    """The residuals in words."""
+    """Return the residuals in words."""
     residual = _residual(estimate)
     unit = fitted_signal(estimate)[1]
     root_mean_square = float(np.sqrt(np.mean(residual**2)))

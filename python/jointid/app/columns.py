@@ -1,4 +1,4 @@
-"""Second step: which column holds which signal, in which unit, and the joint's known facts."""
+"""Second step: the column and the unit of each signal, and the joint's known facts."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _MODELS = {name: _LABELS.get(name, name) for name in (AUTO, *_core.model_names()
 
 
 def columns_step(desk: Desk) -> dict[str, Callable[[], object]]:
-    """Draw the step; returns what draws its parts anew."""
+    """Draw the step. Return functions that redraw its parts."""
     heading(2, "2  Columns and units")
     ranges: dict[str, ui.label] = {}
 
@@ -89,7 +89,7 @@ def _column(desk: Desk, signal: str, headers: dict[int, str]) -> None:
 
 
 def _measured(desk: Desk, signal: str, ranges: dict[str, ui.label]) -> None:
-    """Unit, side and range of a signal that has a column."""
+    """Draw unit, side and range of a signal that has a column."""
     client, units, unit = ui.context.client, _units(signal), desk.unit_of(signal)
 
     async def measured(event: Any) -> None:
@@ -143,7 +143,7 @@ def _units(signal: str) -> dict[str, str]:
 
 
 def _seen(desk: Desk, signal: str) -> str:
-    """The range in SI, and what is odd about it."""
+    """Return the range in SI units, and what is unusual about it."""
     column, unit = desk.looked_at(signal), desk.unit_of(signal)
     if column is None or column.low is None or column.high is None:
         return "" if column is None else "no numbers"
@@ -162,7 +162,7 @@ def _seen(desk: Desk, signal: str) -> str:
 
 
 def _facts(desk: Desk) -> None:
-    """What is known of the joint; the fields that a motor's signals need say so."""
+    """Draw the fields for known facts of the joint. A hint marks those that a motor's signals need."""
     heading(3, "Joint and motor")
     hints = {
         "gear_ratio": "motor angle per joint angle; needed for signals of the motor",
@@ -183,7 +183,7 @@ def _facts(desk: Desk) -> None:
 
 
 def _number(desk: Desk, name: str, label: str, hint: str) -> None:
-    """The field of a known number; what is read with it is read again when it has changed."""
+    """Draw the field of a known number. When it changes, redo the reading that depends on it."""
     seen = {"value": desk.facts.get(name)}
 
     async def left() -> None:

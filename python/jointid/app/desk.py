@@ -1,4 +1,4 @@
-"""The state of one page and what its buttons do: every change goes through here, every computation to the process."""
+"""The state of one page and the actions of its buttons. All changes happen here, and a process computes."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ if TYPE_CHECKING:
     from jointid.recording.recording import Recording
 
 COUNTS = "counts"
-"""The unit of an encoder: needs the counts of a turn."""
+"""The unit of an encoder, which needs the counts per revolution."""
 READ_WITH = ("gear_ratio", "sample_period")
-"""Facts with which a log is read."""
+"""Facts that are used to read a log."""
 _TURN = 2.0 * math.pi
 _READ = ("columns", "units", "scale", "side")
 _JOINT_FACTS = ("gear_ratio", "torque_constant", "inertia")
@@ -41,15 +41,15 @@ class Desk:
     Parameters
     ----------
     changed : callable
-        Called with the name of what is to be drawn anew: "columns", "ranges",
-        "remarks", "signals", "result", "progress".
+        Called with the name of the part to redraw: "columns", "ranges", "remarks", "signals", "result",
+        "progress".
 
     Attributes
     ----------
     problem : str
-        Why the log cannot be read; "" where it can.
+        Reason why the log cannot be read; "" if it can.
     failure : str
-        Why there is no answer; "" where there is one, or none is computed.
+        Reason why there is no result; "" if there is one, or none is computed.
     """
 
     def __init__(self, changed: Callable[[str], object]) -> None:
@@ -67,23 +67,23 @@ class Desk:
         self.on_brush: Callable[[tuple[float, float] | None], object] = lambda _stretch: None
         self.counts_per_turn: float | None = None
         self.facts: dict[str, Any] = {}
-        self._known: Joint | None = None  # of the example
-        self._log: tuple[Path | None, str] = (None, "")  # where it is kept, and what it is called
+        self._known: Joint | None = None  # facts of the example
+        self._log: tuple[Path | None, str] = (None, "")  # path, and the user's name of it
         self._changed = changed
         self._folder = Path(tempfile.mkdtemp(prefix="jointid-app-"))
 
     def close(self) -> None:
-        """End what is computed, and remove what was uploaded."""
+        """End the computation, and remove the uploaded file."""
         self.worker.cancel()
         shutil.rmtree(self._folder, ignore_errors=True)
 
     def place_for(self, name: str) -> Path:
-        """Return where an upload is kept: of its name only the ending is used.
+        """Return the path for an upload. Only the ending of its name is used.
 
         Raises
         ------
         InputError
-            The ending is none that is read.
+            The ending is unknown.
         """
         from jointid.base.file_endings import ending_of
         from jointid.recording.readers.registry import endings
@@ -91,16 +91,16 @@ class Desk:
         return self._folder / f"recording{ending_of(Path(Path(name).name), endings())}"
 
     async def open(self, path: Path, name: str) -> None:
-        """Look at a file, and read it if its headers say enough."""
+        """Examine a file, and read it if its headers give enough information."""
         await self._open(Call(file=path, name=Path(name).name))
 
     async def try_example(self, example: Call) -> None:
-        """Read an example with what is known of its joint, and identify it."""
+        """Read an example with the known facts of its joint, and identify it."""
         await self._open(example)
         await self.identify()
 
     async def read(self) -> None:
-        """Read the recording as it is stated now."""
+        """Read the recording with the present settings."""
         if self.call is None:
             return
         self.recording, self.problem = None, ""
@@ -136,7 +136,7 @@ class Desk:
         await self._answer("comparing", work)
 
     def cancel(self) -> None:
-        """End what is computed now."""
+        """End the present computation."""
         self.worker.cancel()
 
     async def obey(self, action: Action) -> None:
@@ -153,7 +153,7 @@ class Desk:
         await self.identify()
 
     def assign(self, signal: str, column: int | None) -> None:
-        """Say which column holds a signal; None for none."""
+        """Set the column of a signal; None for none."""
         assert self.call is not None
         assert self.looked is not None
         load: dict[str, Any] = {name: dict(self.call.load.get(name, {})) for name in _READ}
@@ -164,7 +164,7 @@ class Desk:
         self._changed("columns")
 
     def measure(self, signal: str, unit: str) -> None:
-        """Say in which unit a signal's column is."""
+        """Set the unit of a signal's column."""
         assert self.call is not None
         load: dict[str, Any] = {name: dict(self.call.load.get(name, {})) for name in _READ}
         load["units"].pop(signal, None)
@@ -177,7 +177,7 @@ class Desk:
         self._changed("columns")
 
     def put_on(self, signal: str, side: str) -> None:
-        """Say on which side of the gear a signal is measured; "" for what its header says."""
+        """Set the side of the gear on which a signal is measured; "" for the side in its header."""
         assert self.call is not None
         load: dict[str, Any] = {name: dict(self.call.load.get(name, {})) for name in _READ}
         load["side"].pop(signal, None)
@@ -187,7 +187,7 @@ class Desk:
         self._changed("columns")
 
     def count(self, per_turn: float | None) -> None:
-        """Say how many counts a turn of the joint has."""
+        """Set the encoder counts per revolution of the joint."""
         self.counts_per_turn = per_turn
         if self.call is not None:
             scale = dict.fromkeys(self.call.load.get("scale", {}), _TURN / (per_turn or 1.0))
@@ -195,19 +195,19 @@ class Desk:
             self._changed("ranges")
 
     def choose(self, model: str) -> None:
-        """Say which friction model is identified; "auto" lets the data choose."""
+        """Set the friction model to identify; "auto" chooses it from the data."""
         if self.call is not None:
             self.call = replace(self.call, identify={**self.call.identify, "model": model})
 
     @property
     def model(self) -> str:
-        """The friction model that is stated, or known of the example; "auto" for none."""
+        """The friction model that is set, or known for the example; "auto" for none."""
         known = self._known.model.name if self._known is not None else None
         stated = known if self.call is None else self.call.identify.get("model", known)
         return stated if isinstance(stated, str) and ":" not in stated else "auto"
 
     def brush(self, bounds: Sequence[float] | None) -> None:
-        """Say which stretch of time is brushed; None for none."""
+        """Set the selected stretch of time; None for none."""
         whole = self.recording
         self.brushed = None
         if bounds and len(bounds) == 2 and whole is not None:
@@ -217,18 +217,18 @@ class Desk:
         self.on_brush(self.brushed)
 
     def leave_out(self) -> None:
-        """Leave the brushed stretch out."""
+        """Exclude the selected stretch."""
         if self.call is not None and self.brushed is not None:
             self.call = replace(self.call, left_out=(*self.call.left_out, self.brushed))
             self.brushed = None
 
     def keep_all(self) -> None:
-        """Leave nothing out."""
+        """Use all stretches again."""
         if self.call is not None:
             self.call = replace(self.call, left_out=())
 
     def column_of(self, signal: str) -> int | None:
-        """Number of the column that holds a signal, as stated or as the headers say."""
+        """Return the number of a signal's column, as set or from the headers."""
         assert self.call is not None
         assert self.looked is not None
         stated = self.call.load.get("columns", {})
@@ -239,11 +239,11 @@ class Desk:
         if signal not in stated and column in [
             each for each in stated.values() if isinstance(each, int)
         ]:
-            return None  # given to another signal
+            return None  # used by another signal
         return column
 
     def unit_of(self, signal: str) -> str:
-        """Unit of a signal's column, as stated or as its header says; "" where SI is assumed."""
+        """Return the unit of a signal's column, as set or from its header; "" if SI is assumed."""
         assert self.call is not None
         if signal in self.call.load.get("scale", {}):
             return COUNTS
@@ -252,11 +252,11 @@ class Desk:
         return stated or ("" if column is None else column.unit)
 
     def side_of(self, signal: str) -> str:
-        """Side of the gear that is stated for a signal; "" for none."""
+        """Return the side of the gear that is set for a signal; "" for none."""
         return "" if self.call is None else str(self.call.load.get("side", {}).get(signal, ""))
 
     def looked_at(self, signal: str) -> LookedColumn | None:
-        """What was seen of a signal's column."""
+        """Return what the first look found about a signal's column."""
         number = self.column_of(signal)
         return None if number is None or self.looked is None else self.looked.columns[number]
 
@@ -276,7 +276,7 @@ class Desk:
         self.call = replace(self.call, load={**kept, **stated})
 
     def _how_to_read(self) -> dict[str, Any]:
-        """The arguments of `load`, those with the facts of the joint that it takes."""
+        """Return the arguments of `load`, including the facts of the joint that it uses."""
         assert self.call is not None
         kept = {name: value for name, value in self.call.load.items() if name not in READ_WITH}
         stated = {name: self.facts.get(name) for name in READ_WITH}
@@ -294,7 +294,7 @@ class Desk:
         return known.replace(**left_empty, **stated)
 
     async def _open(self, call: Call) -> None:
-        """Look at a call's file, and read it as the call says."""
+        """Examine a call's file, and read it with the call's arguments."""
         self.call = self.looked = self.recording = self.estimate = self.comparison = None
         self.problem, self.failure, self.remarks, self.brushed = "", "", (), None
         if call.joint is not None or self._known is not None:  # facts of another joint
@@ -314,7 +314,7 @@ class Desk:
             await self.read()
 
     async def _answer(self, what: str, work: Callable[[], Awaitable[None]]) -> None:
-        """Compute an answer from what is read as it is stated now."""
+        """Compute a result with the present settings."""
         self.failure = ""
         await self.read()
         if self.call is None or self.recording is None:
@@ -322,7 +322,7 @@ class Desk:
         else:
             self.failure = await self._do(what, work, len(self.recording.time))
         if self.failure and self.failure != f"{what} was cancelled":
-            self.estimate = self.comparison = None  # of what was stated before
+            self.estimate = self.comparison = None  # results of earlier settings
         self._changed("result")
         self._changed("progress")
 
@@ -330,7 +330,7 @@ class Desk:
         self.work.progress(share, step)
 
     async def _do(self, what: str, work: Callable[[], Awaitable[None]], samples: int = 0) -> str:
-        """Do some work; returns why it was not done, or "" where it was."""
+        """Do some work. Return the reason if it failed, otherwise ""."""
         self.work.begin(what, samples)
         self._changed("progress")
         failure = "cancelled"
@@ -353,7 +353,7 @@ class Desk:
 
 
 def _facts_of(joint: Joint | None) -> dict[str, Any]:
-    """The known facts that the page has fields for."""
+    """Return the known facts for which the page has fields."""
     fields = {name: getattr(joint, name, None) for name in _JOINT_FACTS}
     unknown = Joint()
     return {n: v for n, v in fields.items() if v is not None and v != getattr(unknown, n)}

@@ -1,8 +1,9 @@
-"""Who may talk to the page: this machine's own browser, with the token of this start, and small uploads.
+"""Access control of the page: only this machine's browser, with the token of this start, and small uploads.
 
-A loopback address is no boundary: any page that a browser shows may send requests to it, and a name that is bound to
-127.0.0.1 after it was loaded (DNS rebinding) makes them look like its own. So the Host has to be ours, an Origin
-has to be ours, also of a websocket, and every request but the first needs the cookie that the first one's token buys.
+A loopback address does not protect: any page in a browser may send requests to it. A name that points to
+127.0.0.1 after it was loaded (DNS rebinding) makes these requests look like same-origin requests. Therefore
+the Host and the Origin must be ours, also for a websocket. Every request except the first needs the cookie
+that the server sets in exchange for the token.
 """
 
 from __future__ import annotations
@@ -26,17 +27,17 @@ _POLICY = (
 
 
 class Guard:
-    """An ASGI application in front of another one.
+    """An ASGI application that filters the requests to another one.
 
     Parameters
     ----------
     app : ASGI application
     port : int
-        Of the server.
+        Port of the server.
     token : str
-        Of this start.
+        Token of this start.
     largest : int
-        Bytes of a request's body.
+        Largest number of bytes in a request's body.
     """
 
     def __init__(self, app: Application, *, port: int, token: str, largest: int) -> None:
@@ -48,7 +49,7 @@ class Guard:
         self._largest = largest
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Pass on what is allowed."""
+        """Pass on allowed requests."""
         if scope["type"] == "lifespan":
             await self._app(scope, receive, send)
             return
@@ -121,7 +122,7 @@ class Guard:
         return False
 
     def _counted(self, receive: Receive) -> Receive:
-        """Receive no more than is accepted: a body may come without its length."""
+        """Receive at most the accepted number of bytes, because a body may come without its length."""
         total = 0
 
         async def counted() -> Message:
@@ -146,7 +147,7 @@ def _same(given: str, expected: str) -> bool:
 
 
 def _with_policy(send: Send) -> Send:
-    """Let pages load nothing from elsewhere, and nobody frame them."""
+    """Prevent pages from loading foreign content and from being framed."""
 
     async def sent(message: Message) -> None:
         if message["type"] == "http.response.start":

@@ -1,4 +1,4 @@
-"""The look of the page: the colours of the reports on its controls, and the few elements that all steps use."""
+"""The look of the page: the colours of the reports for its controls, and elements that all steps use."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _COLOURS = f"""
 :root {{ color-scheme: light dark; {_variables(LIGHT)} }}
 @media (prefers-color-scheme: dark) {{ :root {{ {_variables(DARK)} }} }}
 """
-# Quasar's own colours are made for a white ground. The variables are the style sheet's, for light and dark.
+# Quasar's own colours are for a white background. These variables come from the style sheet, for light and dark.
 _CONTROLS = """
 body { font: 15px/1.5 system-ui, sans-serif; --q-primary: var(--link) !important;
  --q-negative: var(--alarm) !important; --q-warning: var(--fifth) !important; --q-positive: var(--third) !important;
@@ -86,19 +86,19 @@ _WORDS = {"blocking": "Error", "warning": "Warning", "info": "Note"}
 
 
 def dress() -> None:
-    """Give the page its look, in the light or dark that the browser prefers."""
+    """Apply the page's look, in the browser's light or dark mode."""
     ui.dark_mode(None)
     ui.add_css(f"@layer components {{ {_COLOURS} {NOTEBOOK} {_CONTROLS} }}")
 
 
 def heading(level: int, text: str, name: str = "") -> None:
-    """Draw a heading, with a name where links lead to it."""
+    """Draw a heading, with a name for links."""
     with ui.element(f"h{level}").props(f"id={name}" if name else ""):
         ui.html(text, tag="span")
 
 
 def note(text: str, severity: str = "info", *, spoken: bool = False) -> ui.element:
-    """Draw a remark with its severity in words; a screen reader may have to say it at once."""
+    """Draw a remark with its severity in words. With `spoken`, a screen reader says it at once."""
     with ui.element("div").classes(f"note {severity}") as drawn:
         words = element("b", f"{_WORDS[severity]}:")
         ui.html(f"{words} {escape(text)}", tag="p", sanitize=False)
@@ -106,18 +106,18 @@ def note(text: str, severity: str = "info", *, spoken: bool = False) -> ui.eleme
 
 
 def of_page(parts: Iterable[Html], name: str) -> None:
-    """Draw parts of a report's page."""
+    """Draw parts of a report page."""
     markup = "".join(map(str, parts))
     ui.html(markup, sanitize=False).classes("jointid").props(f"id={name}")
 
 
 def focus(client: Client, name: str) -> None:
-    """Put the keyboard's focus on an element that was drawn anew."""
+    """Set the keyboard focus to an element that was redrawn."""
     client.run_javascript(f"setTimeout(() => document.getElementById('{name}')?.focus(), 150)")
 
 
 def chart(options: dict[str, Any], name: str, text: str, height: int) -> ui.echart:
-    """Draw a picture, with its text for those who do not see it."""
+    """Draw a picture, with its text for screen readers."""
     picture = ui.echart(options, renderer="svg").style(f"height: {height}px; width: 100%")
     picture.props["id"] = name
     picture.props["role"] = "img"

@@ -15,12 +15,12 @@ from jointid.app.signals import signals_step
 from jointid.app.wording import worded
 from jointid.base.errors import InputError
 
-# A button that was drawn anew has lost the keyboard's focus.
+# A redrawn button has lost the keyboard focus.
 _KEEP_FOCUS = """
 setTimeout(() => { if (document.activeElement === document.body)
   document.getElementById("identify")?.focus({preventScroll: true}) }, 400)
 """
-_TICK = 0.5  # [s] between two drawings of the progress
+_TICK = 0.5  # [s] between two updates of the progress
 
 
 def build(largest: int, example: Call) -> None:
@@ -29,9 +29,9 @@ def build(largest: int, example: Call) -> None:
     Parameters
     ----------
     largest : int
-        Bytes of an upload.
+        Largest number of bytes of an upload.
     example : Call
-        What "Try an example" identifies.
+        The call that "Try an example" runs.
     """
     parts: dict[str, Callable[[], object]] = {}
     client = ui.context.client
@@ -91,7 +91,7 @@ def _upload(desk: Desk, largest: int, example: Call) -> None:
         ),
     ).props("flat")
     with upload.add_slot("header"), ui.element("div").classes("buttons"):
-        # A click on the hidden input opens the browser's dialogue: the button is what a keyboard reaches.
+        # A click on the hidden input opens the browser's dialogue. The keyboard reaches the button.
         with ui.element("div").style("display: none"):
             ui.element("q-uploader-add-trigger")
         ui.button("Choose a log").props("id=choose").on(
@@ -108,7 +108,7 @@ def _upload(desk: Desk, largest: int, example: Call) -> None:
 
 
 def _actions(desk: Desk) -> Callable[[], object]:
-    """Draw the buttons and the progress; returns what draws them anew."""
+    """Draw the buttons and the progress. Return a function that redraws them."""
     heading(2, "4  Identify")
     with ui.element("div").classes("buttons"):
         identify = (
@@ -119,7 +119,7 @@ def _actions(desk: Desk) -> Callable[[], object]:
         text = ui.label().classes("hint").props("id=progress")
         bar = ui.linear_progress(0.0, show_value=False).props('aria-label="progress"')
         ui.button("Cancel", on_click=desk.cancel).props("outline id=cancel")
-    # Spoken once when work begins and once when it ends, not with each tick.
+    # A screen reader says it when work begins and ends, not at each update.
     status = ui.label().classes("spoken").props("role=status aria-live=polite id=status")
 
     def tick() -> None:

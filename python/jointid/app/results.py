@@ -27,18 +27,18 @@ if TYPE_CHECKING:
     from jointid.base.result import Result
     from jointid.estimate.estimate import Estimate
 
-# Parts of a report's page, by their names; the first one has none. The rest is drawn here, with buttons.
+# Names of parts of a report page; the first part has no name. The other parts are drawn here, with buttons.
 _OF_ESTIMATE = ("", "parameters")
 _OF_COMPARISON = ("models", "held-out")
 
 
 def result_step(desk: Desk) -> Callable[[], object]:
-    """Draw the step; returns what draws it anew."""
+    """Draw the step. Return a function that redraws it."""
 
     @ui.refreshable
     def draw() -> None:
         if desk.failure:
-            spoken = desk.failure != desk.problem  # that was said
+            spoken = desk.failure != desk.problem  # the screen reader has already said it
             note(desk.failure, "blocking", spoken=spoken).props("id=failure")
         estimate = desk.estimate
         if estimate is not None:
@@ -57,7 +57,7 @@ def result_step(desk: Desk) -> Callable[[], object]:
 
 
 def _parts(result: Result, names: tuple[str, ...]) -> list[Html]:
-    """Some parts of a result's page, under the headings of this page."""
+    """Return some parts of a result's page, under the headings of this page."""
     parts = parts_of(result, Extras(action=label_of))
     return html_parts([replace(each, look="open") for each in parts if each.name in names], 3)
 

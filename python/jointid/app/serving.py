@@ -1,4 +1,4 @@
-"""The program: a server on this machine alone, whose address holds a token."""
+"""The server program, for this machine only. Its address contains a token."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from jointid.app.call import Call
 from jointid.base.errors import InputError
 
 LARGEST = 200_000_000
-"""Bytes of an upload, unless stated."""
-_GONE = 3.0  # [s] without its page after which a page's work ends
-_STARTS = 60.0  # [s] within which the server listens, also on a loaded machine
+"""Default largest number of bytes of an upload."""
+_GONE = 3.0  # [s] without its page after which its work ends
+_STARTS = 60.0  # [s] in which the server must listen, also on a loaded machine
 _POLL = 0.02  # [s]
 
 
@@ -28,11 +28,11 @@ def serve(
     opened : callable
         Called with the page's address when it can be opened.
     example : Call
-        What "Try an example" identifies.
+        The call that "Try an example" runs.
     port : int
-        0 (default): a free one.
+        Port of the server. Default 0: a free one.
     largest : int
-        Bytes of an upload. Default 200 MB.
+        Largest number of bytes of an upload. Default 200 MB.
 
     Raises
     ------
@@ -60,7 +60,7 @@ def serve(
     def root() -> None:
         build(largest, example)
 
-    # The last one that is added is the first one that is asked.
+    # The middleware added last handles a request first.
     app.add_middleware(Guard, port=port, token=token, largest=largest + 1_000_000)
     ui.run(
         root,
@@ -78,7 +78,7 @@ def serve(
 
 
 def _when_open(port: int, tell: Callable[[], object]) -> None:
-    """Tell as soon as the port accepts a connection."""
+    """Call `tell` as soon as the port accepts a connection."""
     end = time.monotonic() + _STARTS
     while time.monotonic() < end:
         try:

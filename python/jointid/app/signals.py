@@ -1,4 +1,4 @@
-"""Third step: the signals over time; a stretch is chosen with the mouse or by numbers, and left out."""
+"""Third step: the signals over time. The user selects a stretch by mouse or by numbers, and excludes it."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from jointid.app.look import FIELD, chart, focus, heading
 
 
 def signals_step(desk: Desk) -> Callable[[], object]:
-    """Draw the step; returns what draws it anew."""
+    """Draw the step. Return a function that redraws it."""
     heading(2, "3  Signals")
 
     @ui.refreshable
@@ -59,7 +59,7 @@ def signals_step(desk: Desk) -> Callable[[], object]:
                 leave.set_enabled(desk.brushed is not None)
 
         def shown() -> None:
-            """Show the stretch that the mouse has chosen in the fields."""
+            """Show the stretch selected by mouse in the fields."""
             start, stop = desk.brushed or (None, None)
             begin.set_value(None if start is None else round(start, 3))
             end.set_value(None if stop is None else round(stop, 3))

@@ -1,4 +1,4 @@
-"""The tasks of a page's process: each takes `report` first, for progress."""
+"""The tasks of a page's process. Each has `report` as first argument, for progress."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ Report = Callable[[float, str], object]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Read:
-    """A recording, and what is said about how it was read."""
+    """A recording, and remarks about the reading."""
 
     recording: Recording
     remarks: tuple[str, ...]
 
 
 def look(_report: Report, path: Path) -> FirstLook:
-    """What a file holds."""
+    """Return the content of a file."""
     from jointid.recording.readers.looking import first_look
 
     return first_look(path)
 
 
 def read(_report: Report, call: Call) -> Read:
-    """The whole recording."""
+    """Return the complete recording."""
     from jointid.recording.file_remarks import remarks
 
     recording = call.recording()
@@ -44,7 +44,7 @@ def read(_report: Report, call: Call) -> Read:
 
 
 def identify(report: Report, call: Call) -> tuple[Estimate, str]:
-    """The estimate, and its report as a page."""
+    """Return the estimate, and its report as a page."""
     from jointid._core import GaOptions, Generation
     from jointid.identification.search.search import Search
     from jointid.report.saving import report_page
@@ -63,7 +63,7 @@ def identify(report: Report, call: Call) -> tuple[Estimate, str]:
 
 
 def compare(report: Report, call: Call, models: Sequence[str]) -> Comparison:
-    """The comparison of some models; the default ones where none is named."""
+    """Return the comparison of some models; the default models if none is named."""
     from jointid.comparison.comparison import compare_models
     from jointid.comparison.fitter import ComparisonStep
     from jointid.identification.options import CompareOptions

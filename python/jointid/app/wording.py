@@ -1,4 +1,4 @@
-"""Errors and advice in the words of the page: its fields, and the log by the name that its user gave."""
+"""Errors and advice in the words of the page: its fields, and the user's name of the log."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FIELDS = {
     "sample_period": "time between rows",
     "model": "friction model",
 }
-"""Argument of `load`, `Joint` or `identify` → its field on the page."""
+"""Field on the page for each argument of `load`, `Joint` or `identify`."""
 
 
 def worded(error: InputError, file: Path | None = None, name: str = "") -> str:
@@ -26,9 +26,9 @@ def worded(error: InputError, file: Path | None = None, name: str = "") -> str:
     ----------
     error : InputError
     file : Path, optional
-        Where this machine keeps the log. Default: none.
+        Path of the log on this machine. Default: none.
     name : str
-        What the user calls it.
+        The user's name of the log.
 
     Examples
     --------
@@ -36,7 +36,7 @@ def worded(error: InputError, file: Path | None = None, name: str = "") -> str:
     >>> worded(error)
     'torque constant is -1: more than 0 is expected'
     """
-    place = "" if error.place.startswith("joint") else error.place  # there is one joint
+    place = "" if error.place.startswith("joint") else error.place  # there is only one joint
     field = field_of(error.argument)
     if field and error.value not in (NOT_GIVEN, None) and isinstance(error.value, int | float):
         field = f"{field} is {error.value:g}"
@@ -63,7 +63,7 @@ def field_of(argument: str) -> str:
 
 
 def of_action(action: Action) -> str:
-    """Return what to do, for a sentence.
+    """Return the advice as part of a sentence.
 
     Examples
     --------
@@ -84,7 +84,7 @@ def of_action(action: Action) -> str:
 
 
 def label_of(action: Action) -> str:
-    """What a button that does it is called.
+    """Return the label of a button for an action.
 
     Examples
     --------
@@ -96,12 +96,12 @@ def label_of(action: Action) -> str:
 
 
 def signal_text(signal: str) -> str:
-    """A signal's name in words."""
+    """Return a signal's name in words."""
     return signal.replace("_", " ")
 
 
 def unit_text(name: str) -> str:
-    """A unit as people write it.
+    """Return a unit in the usual notation.
 
     Examples
     --------
@@ -112,7 +112,7 @@ def unit_text(name: str) -> str:
 
 
 def _of_signals(name: str, value: object) -> list[str]:
-    """What to choose for each signal of a mapping."""
+    """Return the choices for each signal of a mapping."""
     found = []
     noun = _SIGNALS[name]
     for signal, chosen in value.items() if isinstance(value, Mapping) else ():
@@ -131,7 +131,7 @@ def _of_model(name: str, value: object) -> list[str]:
 
 
 def _filled(name: str, value: object) -> list[str]:
-    """What to fill in: an argument that has no field is called by its name in words."""
+    """Return the fields to fill in. An argument without a field appears by its name in words."""
     field = field_of(name)
     if isinstance(value, Mapping):
         inside = ", ".join(f"{key} = {_shown(each)}" for key, each in value.items())

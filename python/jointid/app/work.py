@@ -1,27 +1,27 @@
-"""The present work of a page's process: its progress, the elapsed and the expected time."""
+"""The present work of a page's process: progress, elapsed time and expected time."""
 
 from __future__ import annotations
 
 from jointid.base.pace import Pace
 
-# [s] of a start and of each sample: only until work of the same name was measured on this machine.
+# [s] for a start and for each sample, until work of the same name was measured on this machine.
 _START = 0.5
 _SAMPLE = {"identifying": 2e-5, "comparing": 4e-5}
-_TRUSTED = 0.1  # the share from which the work's own pace says more than earlier work
-_NEARLY = 0.95  # the largest share that is shown on the clock alone
+_TRUSTED = 0.1  # share from which the present work's pace is more reliable than earlier work
+_NEARLY = 0.95  # largest share that is shown from the clock alone
 
 
 class Work:
-    """Work that runs, or none.
+    """The running work, or none.
 
     Attributes
     ----------
     name : str
-        What is done, e.g. "identifying"; "" where nothing is.
+        Name of the work, e.g. "identifying"; "" without work.
     share : float
-        What is done of the whole, as the work reports it; 0 where it does not.
+        Finished share, as the work reports it; 0 without a report.
     step : str
-        What is done now, as the work reports it.
+        Present step, as the work reports it.
 
     Examples
     --------
@@ -38,26 +38,26 @@ class Work:
         self.name, self.step, self.share = "", "", 0.0
         self._samples = 0
         self._pace = Pace()
-        self._measured: dict[str, float] = {}  # [s] of a sample
+        self._measured: dict[str, float] = {}  # [s] per sample
 
     def begin(self, name: str, samples: int = 0) -> None:
-        """Begin some work on a number of samples; 0 where it is not known."""
+        """Begin work on a number of samples; 0 if it is unknown."""
         self.name, self.step, self.share = name, "", 0.0
         self._samples, self._pace = samples, Pace()
 
     def progress(self, share: float, step: str) -> None:
-        """Report how far the work is."""
+        """Report the progress of the work."""
         self.share, self.step = share, step
 
     def end(self, *, done: bool) -> None:
-        """End it; work that is done says how long the next one of its name takes."""
+        """End the work. Finished work gives the expected time of the next work of the same name."""
         if done and self._samples:
             self._measured[self.name] = self._pace.elapsed / self._samples
         self.name = ""
 
     @property
     def expected(self) -> float | None:
-        """The duration of the whole work [s]; None where nothing is known of it."""
+        """Expected duration of the whole work [s]; None if it is unknown."""
         guess = None
         if self._samples and self.name in self._measured:
             guess = self._measured[self.name] * self._samples
@@ -70,7 +70,7 @@ class Work:
 
     @property
     def shown_share(self) -> float:
-        """The share as reported, otherwise by the clock."""
+        """The reported share, otherwise the share from the clock."""
         expected = self.expected
         if self.share > 0.0 or not expected:
             return self.share
@@ -78,7 +78,7 @@ class Work:
 
     @property
     def text(self) -> str:
-        """What is done, since when, and how long it may take; "" where nothing is."""
+        """The work, its elapsed and its expected time; "" without work."""
         if not self.name:
             return ""
         step = f", {self.step}" if self.step else ""

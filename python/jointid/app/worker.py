@@ -1,4 +1,4 @@
-"""The process that computes for a page: what takes long can be cancelled, and ends with the page."""
+"""The process that computes for a page. Long work can be cancelled, and ends with the page."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ class CancelledWork(Exception):  # noqa: N818
 
 
 class Worker:
-    """A process of its own that answers one call after the other.
+    """A separate process that answers one call after the other.
 
-    It starts with the first call. What it is asked to run is a function of this package that takes `report` (called
-    with a share from 0 to 1 and a text) before its arguments, and returns what can be pickled.
+    It starts with the first call. A call runs a function of this package. The function takes `report` (called
+    with a share from 0 to 1 and a text) before its arguments. Its result must be picklable.
     """
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Worker:
 
     @property
     def running(self) -> bool:
-        """Whether its process lives."""
+        """Whether the process runs."""
         return self._process is not None and self._process.is_alive()
 
     async def run(
@@ -42,16 +42,16 @@ class Worker:
         *arguments: Any,
         report: Callable[[float, str], object] = lambda _share, _text: None,
     ) -> Any:
-        """Return what the function returns.
+        """Return the result of the function.
 
         Raises
         ------
         InputError
-            As the function raises it.
+            The function raised it.
         CancelledWork
             `cancel` was called.
         RuntimeError
-            The function failed in another way, or its process ended: a bug, or no memory was left.
+            The function failed with another error, or its process ended: a bug, or memory ran out.
         """
         generation = self._generation
         async with self._lock:
@@ -60,7 +60,7 @@ class Worker:
             connection = self._started()
             connection.send((function, arguments))
             while True:
-                # A cancelled call's connection is closed: look at the number first.
+                # A cancelled call's connection is closed, so check the number first.
                 while generation == self._generation and self.running and not connection.poll():
                     await asyncio.sleep(_POLL)
                 if generation != self._generation:
@@ -82,7 +82,7 @@ class Worker:
                     raise RuntimeError(content)
 
     def cancel(self) -> None:
-        """End the process and what it computes; the next call starts another one."""
+        """End the process and its computation. The next call starts another process."""
         self._generation += 1
         if self._process is not None:
             self._process.kill()
@@ -104,7 +104,7 @@ class Worker:
 
 
 def _serve(connection: Connection) -> None:
-    """Answer calls until the page is gone."""
+    """Answer calls until the page is closed."""
 
     def report(share: float, text: str) -> None:
         connection.send(("progress", (share, text)))
@@ -120,6 +120,6 @@ def _serve(connection: Connection) -> None:
             answer = ("refused", error)
         except MemoryError:
             answer = ("refused", InputError("there is not enough memory for this recording"))
-        except Exception:  # a bug: its place is worth more than a page that stands still
+        except Exception:  # a bug: its traceback is more useful than a page that hangs
             answer = ("failed", traceback.format_exc())
         connection.send(answer)
