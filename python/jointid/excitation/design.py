@@ -74,7 +74,7 @@ class Design(DesignFields, KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.excitation.overview import overview_of
 
         return overview_of(self)
@@ -101,7 +101,7 @@ class Design(DesignFields, KeptResult):
         Returns
         -------
         tuple of Axes
-            As `jointid.plot.designed_motion`.
+            Axes of `jointid.plot.designed_motion`.
         """
         from jointid.plot.design import designed_motion
 
@@ -126,7 +126,7 @@ class Design(DesignFields, KeptResult):
         Parameters
         ----------
         text : str
-            From `to_json`.
+            Result of `to_json`.
 
         Raises
         ------

@@ -81,7 +81,7 @@ class Situation:
 
     @functools.cached_property
     def _free(self) -> Joint:
-        """Return the joint with the torque limit of the motion and without its free parameters."""
+        """Joint with the torque limit of the motion, without its free parameters."""
         torque = self.limits.torque
         limited = self.joint
         if torque is not None:

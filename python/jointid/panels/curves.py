@@ -23,7 +23,7 @@ def known_values(joint: Joint) -> dict[str, float]:
 
 
 def friction_terms(values: Mapping[str, float]) -> list[str]:
-    """Return the friction terms whose coefficient and shapes have values."""
+    """Return the friction terms with values for their coefficient and shapes."""
     return [
         term.key
         for term in _core.terms()

@@ -147,7 +147,7 @@ class Study(KeptResult):
 
     @property
     def overview(self) -> Overview:
-        """Return the summary that a report page shows."""
+        """Summary for a report page."""
         from jointid.study.overview import overview_of
 
         seeds = range(self.seed, self.seed + max(self.trials, 1))
@@ -185,7 +185,7 @@ class Study(KeptResult):
         Parameters
         ----------
         text : str
-            From `to_json`.
+            Result of `to_json`.
 
         Raises
         ------

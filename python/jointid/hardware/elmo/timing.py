@@ -53,7 +53,7 @@ class SyncWatch:
 
     @property
     def sampled(self) -> float:
-        """Return the sample time [s]."""
+        """Sample time [s]."""
         if not self._stamped:
             return self._sent + bits_on_wire(0) / self._bitrate
         return min(self._free + bits_on_wire(0) / self._bitrate, self._latest)

@@ -48,7 +48,7 @@ class Agenda:
 
     @property
     def next(self) -> float:
-        """Return the time of the next event [s]; infinite without one."""
+        """Time of the next event [s]; infinite without one."""
         return self._events[0][0] if self._events else float("inf")
 
     def pop(self) -> tuple[float, Event]:
