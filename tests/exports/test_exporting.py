@@ -62,7 +62,7 @@ def test_a_file_states_what_was_not_determined(tmp_path: Path, ending: str) -> N
     assert "19.9932 to 20.0045, not well determined by the recording" in warned
     assert "undetermined (warning): one reversal" in warned
     # A joint file holds no uncertainty at all.
-    assert "Of unknown uncertainty: coulomb, static" in text_of(
+    assert "Values of unknown uncertainty: coulomb, static" in text_of(
         THESIS.replace(limits=jid.Limits(velocity=1.0)), tmp_path / f"third{ending}"
     )
 
@@ -215,4 +215,4 @@ def test_fixed_values_are_not_doubtful(tmp_path: Path) -> None:
         },
         limits=jid.Limits(velocity=1.0),
     )
-    assert "Of unknown uncertainty" not in text_of(fixed, tmp_path / "j.st")
+    assert "Values of unknown uncertainty" not in text_of(fixed, tmp_path / "j.st")

@@ -77,7 +77,7 @@ def test_what_is_not_as_a_session_needs_it_is_named() -> None:
     report = drive.report()
     assert [each.name for each in report.differences] == ["6075h", "6007h"]
     assert str(report.differences[0]).endswith("share of: 4000 mA; expected: 8000 mA")
-    assert report.trouble == "it has shut its motor down before: feedback lost"
+    assert report.trouble == "the drive has shut its motor down before: feedback lost"
 
 
 def test_a_joint_that_moves_shows() -> None:

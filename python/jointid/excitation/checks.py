@@ -25,10 +25,10 @@ def check_arguments(
     """Check the arguments of `design`, which describes them."""
     if isinstance(controller, _core.OpenLoop):
         raise InputError(
-            "a motion is designed for a controller that follows it",
+            "a design needs a controller with feedback",
             argument="controller",
             value="open_loop",
-            remedy="give another, or none",
+            remedy="use another controller, or omit it",
         )
     if controller is not None and not isinstance(controller, get_args(Controller)):
         kinds = ", ".join(law.__name__ for law in LAWS.values() if law is not _core.OpenLoop)

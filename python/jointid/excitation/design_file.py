@@ -78,7 +78,7 @@ def read_design(document: Mapping[str, Any], cls: type[Saved], place: str = "") 
     """
     if "design" not in document and "trajectory" in document:
         raise InputError(
-            "this is a motion without a table [design], which says what to expect of it"
+            "this is a motion without a table [design], which holds the expected errors"
         )
     check_schema(document)
     tables = _FILE.read(dict(document), "")

@@ -31,7 +31,7 @@ def expected_errors(
 
     The errors counted in the rehearsal hold for the nominal joint. Errors of other joints grow by the same
     factor as their errors from the information. With information from other recordings, this motion's
-    information shrinks by the same factors, because prior knowledge can only reduce an error.
+    information shrinks by the same factors, so that prior knowledge can only reduce an error.
     """
     request, ranges = situation.request, situation.ranges
     units = _units(situation)

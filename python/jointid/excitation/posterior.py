@@ -125,8 +125,8 @@ def _own_inertia(estimate: Estimate) -> float:
 def _information(
     estimate: Estimate, names: tuple[str, ...], fixed: set[str], unknown: set[str]
 ) -> Array:
-    """Return the information of these parameters at the fixed values, or at any of the unknown ones."""
-    wider = half_widths(estimate, without="symmetry") / NORMAL  # no motion shows this part
+    """Return the information of these parameters, as wide as their intervals, for any value of the unknown ones."""
+    wider = half_widths(estimate, without="symmetry") / NORMAL  # no motion reduces this part
     whole = _of_chance(estimate) / np.outer(wider, wider)
     free = estimate.free
     kept = [free.index(name) for name in names if name in free and name not in unknown]

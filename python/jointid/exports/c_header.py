@@ -38,11 +38,11 @@ def _write(subject: Subject, order: Order) -> bytes:
     )
     notes = [
         f"define {big}_USE_FLOAT before including this file to compute in single precision",
-        "friction is 0 at velocity 0, where a real joint has any friction up to the breakaway: pass the reference "
+        "friction is 0 at velocity 0, where a real joint has any friction up to breakaway: pass the reference "
         "velocity, not the measured one",
     ]
     if law.inertia is None:
-        notes.append("inertia: it is not known, and taken as 0")
+        notes.append("inertia: unknown, taken as 0")
     if loads := subject.law.loaded_by:
         notes.append(
             f"load is the torque {loads} ({plain(subject.torque_unit)}); its sign does not matter"
@@ -86,7 +86,7 @@ def _write(subject: Subject, order: Order) -> bytes:
         "    return sign;",
         "}",
         "",
-        "/* Friction at a velocity and a load; what does not vanish with the speed is multiplied by the sign. */",
+        "/* Friction at a velocity and a load; terms that do not vanish with the speed are multiplied by the sign. */",
         f"static inline {name}_real {name}_friction_smooth({name}_real velocity, {name}_real load, {name}_real width)",
         "{",
         f"    const {name}_real speed = {big}_FABS(velocity);",
@@ -113,7 +113,7 @@ def _write(subject: Subject, order: Order) -> bytes:
         f"    return {name}_friction_smooth(velocity, load, {zero});",
         "}",
         "",
-        "/* Torque of gravity at a position: what the drive needs to hold it. */",
+        "/* Torque of gravity at a position: the drive torque that holds it. */",
         *_function(
             f"{name}_gravity",
             name,
@@ -162,7 +162,7 @@ def _write(subject: Subject, order: Order) -> bytes:
             zero,
         ),
         "",
-        "/* Torque of the drive at the output that a motion needs: inertia, friction, position, offset. */",
+        "/* Drive torque at the output for a motion: inertia, friction, position, offset. */",
         f"static inline {name}_real {name}_torque({name}_real position, {name}_real velocity,",
         f"    {name}_real acceleration, {name}_real load, {name}_real width)",
         "{",
@@ -220,7 +220,7 @@ def _constants(subject: Subject, name: str) -> list[str]:
     add(
         "SMOOTH_WIDTH",
         smooth_width(subject),
-        f"a width for the smooth sign [{subject.position_unit}/s]: 1 % of the speeds that are known",
+        f"a width for the smooth sign [{subject.position_unit}/s]: 1 % of the known speeds",
     )
     return lines
 
@@ -283,7 +283,7 @@ def _check(subject: Subject, name: str) -> list[str]:
     if sensor:
         checks.append(("sensor torque", f"{name}_sensor_torque(row[5])", 8))
     lines = [
-        "/* Compare the functions with jointid's own values; the number of values that differ, 0 if all agree. */",
+        "/* Compare the functions with jointid's own values; return the number of differences (0: all agree). */",
         f"static inline int {name}_self_check(void)",
         "{",
         "    /* position, velocity, acceleration, load, width, reading; friction, torque, sensor torque */",

@@ -48,7 +48,7 @@ def body_of(subject: Subject) -> Body:
     total = law.total_inertia
     if total is None or total <= 0.0:
         raise InputError(
-            "has no value, which a model that moves needs",
+            "has no value, which a model for simulation needs",
             argument="inertia",
             place=joint.owner,
             remedy="give the joint inertia or rotor_inertia, or identify it",

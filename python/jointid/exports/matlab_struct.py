@@ -30,12 +30,12 @@ def _write(subject: Subject, order: Order) -> bytes:
         ) from error
     notes = [
         "friction.velocity has no 0: between its two middle rows a lookup is a steep line through 0",
-        "NaN stands for what is not known",
+        "NaN is an unknown value",
     ]
     if subject.law.loaded_by:
         notes.append("lookup tables are without load; load_friction is per load")
     if subject.speed is None:
-        notes.append("the range of the tables is chosen: no range of speeds is known")
+        notes.append("the range of the tables is arbitrary: the range of speeds is unknown")
     law = subject.law
     if law.centred:
         notes.append(

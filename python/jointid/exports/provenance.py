@@ -54,7 +54,7 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
         names = ", ".join(subject.undetermined)
         lines.append(f"The recording did not determine these values, or not well: {names}.")
     if subject.unknown:
-        lines.append(f"Of unknown uncertainty: {', '.join(subject.unknown)}.")
+        lines.append(f"Values of unknown uncertainty: {', '.join(subject.unknown)}.")
     if subject.findings:
         lines.append("Warnings of the identification:")
         lines += [f"  {each}" for each in subject.findings]

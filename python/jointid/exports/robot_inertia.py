@@ -147,10 +147,10 @@ def _words(estimate: RobotEstimate, number: int) -> Iterator[str]:
     joint = estimate.joints[name]
     if estimate.inertia == FREE:
         yield (
-            f"inertia of all that {name} moves before the next joint; other inertias give the same motion, so single "
-            "numbers"
+            f"inertia of all that {name} moves before the next joint; other inertias give the same "
+            "motion,"
         )
-        yield "mean nothing, and only the set is right"
+        yield "so only the complete set is valid, not single numbers"
     else:
         yield f"inertia of all that {name} moves before the next joint: the URDF's, scaled"
     rotor = joint.parameters.get("rotor_inertia")

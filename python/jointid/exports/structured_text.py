@@ -26,12 +26,12 @@ _TOLERANCE = 1e-9
 def _write(subject: Subject, order: Order) -> bytes:
     name = identifier(order.name)
     notes = [
-        "friction is 0 at velocity 0, where a real joint has any friction up to the breakaway: connect the "
+        "friction is 0 at velocity 0, where a real joint has any friction up to breakaway: connect the "
         "reference velocity, not the measured one",
         "only elements of the second edition of IEC 61131-3 are used, so that older systems can read it",
     ]
     if subject.law.inertia is None:
-        notes.append("inertia: it is not known, and taken as 0")
+        notes.append("inertia: unknown, taken as 0")
     if loads := subject.law.loaded_by:
         notes.append(f"load is the torque {loads}; its sign does not matter")
     lines = [
@@ -177,9 +177,7 @@ def _constants(subject: Subject) -> list[str]:
         add(parameter, value, "")
     if subject.joint.torque_constant is not None:
         add("TORQUE_CONSTANT", subject.joint.torque_constant, "motor torque per current [N*m/A]")
-    add(
-        "SMOOTH_WIDTH", smooth_width(subject), "a value for width: 1 % of the speeds that are known"
-    )
+    add("SMOOTH_WIDTH", smooth_width(subject), "a value for width: 1 % of the known speeds")
     return lines
 
 

@@ -50,7 +50,7 @@ class DesignedFor:
         more = f", and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
         return printable(
             f"{self.source} was designed for {', '.join(found[:_SHOWN])}{more}: the values that the joint reaches "
-            "and the errors to expect are not known for this bench; design the motion again for it"
+            "and the expected errors are unknown for this bench; design the motion again for it"
         )
 
     def _joints(self, joint: Joint | None) -> Iterator[str]:

@@ -350,8 +350,8 @@ class ElmoDrive:
         if self._unread > _UNREAD:
             raise DriveFaultError(
                 "sensor",
-                f"the drive's analog input {source.number} was asked for {self._unread} times in a row "
-                "without an answer",
+                f"the drive's analog input {source.number} did not answer {self._unread} queries "
+                "in a row",
                 measured=self._unread,
                 allowed=_UNREAD,
             )

@@ -157,14 +157,14 @@ class ElmoNetwork:
         self.abort_connection()
 
     def lose_host(self) -> None:
-        """React to a missing host heartbeat: do with the motor what 6007h sets."""
+        """React to a missing host heartbeat: apply 6007h to the motor."""
         if self._objects.value(0x6007, 0):
             self._motor.advance()
             self._motor.switch(on=False)
             self._motor.failure = _HEARTBEAT_LOST
 
     def abort_connection(self) -> None:
-        """React to a stop or reset of the node: do with the motor what 6007h sets (CiA 402)."""
+        """React to a stop or reset of the node: apply 6007h to the motor (CiA 402)."""
         option = self._objects.value(0x6007, 0)
         if option and self._motor.motor_on:
             self._motor.switch(on=False)

@@ -28,8 +28,8 @@ _NETWORK = {
 class ForeignWatch:
     """Distinguish our own frames, which some interfaces return, from frames of another master.
 
-    If it is unknown whether the interface returns own frames, the first frame sent on a free bus decides. If
-    most later frames do not come back, that first frame was a foreign one.
+    If it is unknown whether the interface returns own frames, our first frame on a bus without another master
+    decides. If most later frames do not come back, the first returned frame was a foreign one.
 
     Parameters
     ----------

@@ -78,11 +78,11 @@ def _counts(link: ElmoLink, options: ElmoOptions) -> Reported:
 
 def _trouble(link: ElmoLink, status: DriveStatus | None) -> str:
     if status is None:
-        return "it does not report its status (SR)"
+        return "the drive does not report its status (SR)"
     found = [status.problem]
     if status.failure:
         meaning = failure_meaning(int(link.number("MF") or 0))
-        found.append(f"it has shut its motor down before: {meaning or 'MF is 0'}")
+        found.append(f"the drive has shut its motor down before: {meaning or 'MF is 0'}")
     return "; ".join(text for text in found if text)
 
 

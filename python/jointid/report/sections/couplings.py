@@ -23,8 +23,8 @@ def content(result: Result, extras: Extras) -> list[Part]:
         blocks += [
             _shares(joints),
             paragraph(
-                "Share of what a joint's model leaves unexplained that the motion of another joint explains, on "
-                "held-out blocks of time.",
+                "Share of a joint's residual that the motion of another joint explains, on held-out blocks "
+                "of time.",
                 muted=True,
             ),
         ]

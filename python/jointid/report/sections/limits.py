@@ -18,7 +18,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
     assumptions = (*improved(design), assumed(design), judged_with(design))
     return [
         Part("Limits", (_list(limits_used(design)),), f"{extras.prefix}limits", "half"),
-        Part("What it assumes", (_list(assumptions),), f"{extras.prefix}assumptions"),
+        Part("Assumptions", (_list(assumptions),), f"{extras.prefix}assumptions"),
     ]
 
 
