@@ -22,7 +22,7 @@ def check_arguments(
     parameters: Sequence[str] | None = None,
     callback: object = None,
 ) -> None:
-    """Check the arguments of `design`, which describes them."""
+    """Check arguments of `design`."""
     if isinstance(controller, _core.OpenLoop):
         raise InputError(
             "a design needs a controller with feedback",

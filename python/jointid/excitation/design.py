@@ -48,7 +48,7 @@ class Design(DesignFields, KeptResult):
     criterion : str
         "worst" or "determinant".
     joints : int
-        Number of joints that the search judged each motion with.
+        Number of joints with which the search evaluated each motion.
     evaluations : int
         Number of motions that the search tried.
     seed : int
@@ -85,7 +85,7 @@ class Design(DesignFields, KeptResult):
         Parameters
         ----------
         verbose : bool
-            Whether to add the table of errors, each limit, and how the motion was judged. Default False.
+            Whether to add the table of errors, each limit, and the evaluation settings. Default False.
         """
         from jointid.excitation.tables import answer, summary
 

@@ -19,7 +19,7 @@ class DesignSearch:
     evaluations : int
         Approximate number of motions to try. Default 3600: a few seconds for 12 s of motion.
     joints : int
-        Number of joints drawn from the prior to judge each motion. Default 4.
+        Number of joints drawn from the prior to evaluate each motion. Default 4.
     rehearsals : int
         Number of simulated recordings with noise that give the errors of the chosen motion. Default 256.
     seed : int

@@ -20,7 +20,7 @@ class ExpectedError:
     relative : float
         `stderr` divided by the parameter's size.
     worst : float
-        Largest relative error over the joints that judge the motion.
+        Largest relative error over the joints with which the motion was evaluated.
     before : float, optional
         Standard error without this motion [unit]; infinite if nothing determines the parameter. Default None:
         no prior information.

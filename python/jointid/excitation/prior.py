@@ -45,7 +45,7 @@ class Ranges:
         ]
 
     def joints(self, count: int, seed: int) -> list[dict[str, float]]:
-        """Return values of `count` joints: the nominal joint, then the cell centers of a Latin hypercube."""
+        """Return values of `count` joints: the nominal joint, then the cell centres of a Latin hypercube."""
         if self.drawn:
             return [dict(each) for each in self.drawn[: max(1, count)]]
         others = max(0, count - 1)

@@ -1,4 +1,4 @@
-"""The body that a joint moves, for rigid-body simulators: mass, center of mass, inertia, and the drive's part."""
+"""The body that a joint moves, for rigid-body simulators: mass, centre of mass, inertia, and the drive's part."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ class Body:
     """The moved body, which gives the law's inertia and gravity about the joint's axis."""
 
     mass: float  # [kg]
-    distance: float  # distance of the center of mass from the axis [m]
-    angle: float  # angle of the center of mass above the horizontal, at position 0 [rad]
+    distance: float  # distance of the centre of mass from the axis [m]
+    angle: float  # angle of the centre of mass above the horizontal, at position 0 [rad]
     inertia: float  # about the centre of mass [kg·m²]
     gravity: float  # [m/s²]; 0 if the model has no gravity
     drive: float  # inertia of the drive on the joint side [kg·m²], or [kg]

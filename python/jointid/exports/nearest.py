@@ -24,7 +24,7 @@ class Nearest:
     speed: float | None = None  # the fit's largest speed; None without a fit
     # Largest difference of the friction without load, and of the torques over the position.
     worst: float = 0.0
-    rms: float = 0.0  # of the friction's difference, equally weighted over speed
+    rms: float = 0.0  # root mean square of the difference over equally weighted speeds
 
 
 def lost_terms(subject: Subject) -> tuple[str, ...]:

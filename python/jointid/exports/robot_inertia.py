@@ -1,4 +1,4 @@
-"""Write a whole robot's inertia into its URDF: mass, center and inertia of every moved link."""
+"""Write a whole robot's inertia into its URDF: mass, centre and inertia of every moved link."""
 
 from __future__ import annotations
 

@@ -74,7 +74,7 @@ class Trajectory:
         Parameters
         ----------
         amplitude, offset : float
-            Amplitude and center [rad].
+            Amplitude and centre [rad].
         frequency : float
             Frequency [Hz].
         duration : float

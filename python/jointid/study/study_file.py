@@ -87,7 +87,7 @@ class StudyFile:
                     place=str(self.path),
                     remedy=_ANOTHER,
                 )
-            os.ftruncate(self._file.fileno(), length)  # a line that a crash cut off
+            os.ftruncate(self._file.fileno(), length)  # remove a line that a crash truncated
             self._file.seek(length)
             if known["trials"] == header["trials"]:
                 return
@@ -106,7 +106,7 @@ class StudyFile:
         try:
             while rest:
                 rest = rest[self._file.write(rest) :]
-        except BaseException:  # a full disk takes a part of a line, which the next one would follow
+        except BaseException:  # a full disk stores part of a line: remove it
             with suppress(OSError):  # `FileIO.truncate` gives up when a signal interrupts it
                 os.ftruncate(self._file.fileno(), end)
                 self._file.seek(end)

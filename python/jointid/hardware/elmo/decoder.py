@@ -26,8 +26,8 @@ class ElmoDecoder:
         self.position = 0.0
         self.reading = 0.0
         self.fresh = self.clipped = False
-        self.readings = 0  # that have come
-        self.surplus = 0  # answers to no SYNC
+        self.readings = 0  # number of readings received
+        self.surplus = 0  # answers without a SYNC
         self._positions_due = self._readings_due = 0
 
     def begin(self) -> None:

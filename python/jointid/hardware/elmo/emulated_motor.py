@@ -85,7 +85,8 @@ class ElmoMotor:
             before = self.joint.velocity
             if before:
                 self.joint.advance(-math.copysign(self.settings.brake, before), duration)
-            self._held = before * self.joint.velocity <= 0.0  # it stops and stays
+            # The brake holds a joint that has stopped and is not pushed back.
+            self._held = before * self.joint.velocity <= 0.0
 
     def counts(self) -> int:
         """Return the encoder counts of the motor. They wrap as the drive's do; a stuck encoder repeats them."""

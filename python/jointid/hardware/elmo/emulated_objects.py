@@ -20,7 +20,7 @@ from jointid.hardware.emulated.sdo_server import SdoServer
 
 VENDOR, PRODUCT, REVISION = 0x9A, 0x00030924, 0x01010301
 _SERVO = 0x00020192  # 1000h: a servo drive after CiA 402
-_NO_REMOTE = 0x40000000  # in a PDO's COB-ID: no remote frames
+_NO_REMOTE = 0x40000000  # bit of a PDO's COB-ID: no remote frames
 _TYPES_SENT = frozenset({*range(241), *EVENT})
 _TYPES_RECEIVED = frozenset({1, *EVENT})
 _WATCHED = 1  # largest number of watched heartbeats

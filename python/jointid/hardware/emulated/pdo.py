@@ -12,7 +12,7 @@ from jointid.hardware.emulated.object_dictionary import (
     ObjectDictionary,
 )
 
-OFF = 0x80000000  # in a COB-ID: the PDO does not exist
+OFF = 0x80000000  # bit of a COB-ID: the PDO is off
 EVENT = (254, 255)  # transmission types: events of the manufacturer or of the profile
 _EXTENDED = 0x20000000
 _MOST = 8  # objects, and bytes, in a PDO
