@@ -269,9 +269,8 @@ class _Designing:
         """Return the criterion that the search minimizes, for the nominal joint.
 
         The information's errors scatter less than the errors of few rehearsals. The rehearsals' mean adds the
-        bias, which the information lacks. If the counted errors contradict both, they decide. Example:
-        without a torque sensor, position errors cancel between windows, and the information's errors are
-        several times too large.
+        bias, which the information lacks. Counted errors that contradict both decide: without a torque sensor,
+        position errors cancel between windows, and the information's errors are several times too large.
         """
         judgement = self._fine.judge(motion.core)[0]
         bias, counted = self._relative(rehearsal.bias()), self._relative(rehearsal.rms())
