@@ -19,7 +19,7 @@ PRIOR = {"torque_offset": (-1.0, 1.0)}
     ("changes", "says"),
     [
         ({"controller": "pd"}, "controller is 'pd': one of AdaptiveRobust, CompensatedPid"),
-        ({"controller": jid.OpenLoop()}, "controller is 'open_loop': a motion is designed for"),
+        ({"controller": jid.OpenLoop()}, "controller is 'open_loop': a design needs a controller"),
         ({"sensors": {"encoder_counts": 8000}}, "a Sensors value is expected"),
         (
             {"sensors": jid.Sensors(torque_noise=0.5)},

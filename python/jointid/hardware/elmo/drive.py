@@ -350,8 +350,8 @@ class ElmoDrive:
         if self._unread > _UNREAD:
             raise DriveFaultError(
                 "sensor",
-                f"the drive's analog input {source.number} did not answer {self._unread} queries "
-                "in a row",
+                f"{self._unread} queries of the drive's analog input {source.number} in a row are "
+                "without an answer",
                 measured=self._unread,
                 allowed=_UNREAD,
             )
