@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from defects import DEFECTS, changed, late_velocity
+from documentation.findings_tables import findings_tables, in_place_of_the_table
 from example_recordings import WELL_EXCITED
 from simulated_joint import TRUTH
 
@@ -19,7 +20,6 @@ from jointid.cli.demonstration import data_folder
 from jointid.estimate.findings import Finding
 from jointid.identification import warnings
 from jointid.identification.warnings import registry
-from jointid.identification.warnings.table import findings_table, in_place_of_the_table
 from jointid.report.saving import report_page
 
 ROOT = Path(__file__).parents[2]
@@ -353,7 +353,10 @@ def test_a_check_is_a_file_and_a_line(
     assert "the base wobbles in 1 recording(s)" in estimate._repr_html_()
     again = jid.Estimate.from_json(estimate.to_json())
     assert again.findings == estimate.findings
-    assert "| `wobble` | warning | the base wobbles | bolt it down |" in findings_table()
+    assert (
+        "| `wobble` | warning | the base wobbles | bolt it down |"
+        in findings_tables()["findings.md"]
+    )
 
 
 def test_no_file_is_forgotten() -> None:
@@ -373,13 +376,17 @@ def test_a_check_lists_what_it_yields(path: Path) -> None:
 # --- Documents ---
 
 
-def test_the_page_of_findings_is_what_the_checks_say() -> None:
-    written = (ROOT / "docs" / "findings.md").read_text(encoding="utf-8")
-    assert written == in_place_of_the_table(written, findings_table()), (
-        "write it anew: python -m jointid.identification.warnings.table docs/findings.md"
+@pytest.mark.parametrize(("page", "table"), findings_tables().items())
+def test_a_table_of_findings_is_what_their_types_say(page: str, table: str) -> None:
+    written = (ROOT / "docs" / page).read_text(encoding="utf-8")
+    assert written == in_place_of_the_table(written, table), (
+        "write it again: PYTHONPATH=tools python -m documentation.findings_tables"
     )
+
+
+def test_a_page_without_a_table_of_findings_is_refused() -> None:
     with pytest.raises(ValueError, match="0 tables"):
-        in_place_of_the_table("# Findings\n", findings_table())
+        in_place_of_the_table("# Findings\n", "")
 
 
 def test_a_shift_in_milliseconds_is_doubted(well_excited: jid.Recording) -> None:

@@ -16,9 +16,7 @@ from documents import (
 from message_files import START, State, joint_state, ros2_bag
 
 import jointid as jid
-from jointid.identification.warnings.table import table_rows
 from jointid.robot.links.facts import read_facts
-from jointid.robot.result.finding_types import TYPES
 
 pytest.importorskip("pinocchio")
 STEPS, REFERENCE = "docs/robots.md", "docs/robot_reference.md"
@@ -96,7 +94,3 @@ def test_its_facts_are_read(shared_data: Path, tmp_path: Path) -> None:
     robot = jid.Robot.from_urdf(shared_data / "tx40" / "tx40.urdf", facts=path)
     assert robot.couplings[5].tolist() == [0.0, 0.0, 0.0, 0.0, 1.0, 1.0]
     assert robot.rotor_inertias == (None,) * 6
-
-
-def test_its_table_is_that_of_the_findings() -> None:
-    assert table_rows(TYPES.values()) in read(REFERENCE)

@@ -7,8 +7,6 @@ import pytest
 from documents import blocks, parsed_commands, read, run_python_blocks
 
 import jointid as jid
-from jointid.identification.warnings.table import table_rows
-from jointid.servo.finding_types import TYPES
 
 PAGE = "docs/servos.md"
 TRUTH = {"torque_constant": 0.36, "inertia": 0.0017, "load_friction": 0.15}
@@ -66,7 +64,3 @@ def test_its_joint_file_is_read(tmp_path: Path) -> None:
 
 def test_its_command_exists() -> None:
     assert parsed_commands(read(PAGE)) == ["identify"]
-
-
-def test_its_table_is_that_of_the_findings() -> None:
-    assert table_rows(TYPES.values()) in read(PAGE)

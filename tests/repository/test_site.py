@@ -15,6 +15,7 @@ import pytest
 from documentation import defective, public_names, reference
 from documentation.defective import Case
 from documentation.findings_gallery import listed_sections
+from documentation.findings_tables import in_place_of_the_table
 from documentation.links import Page, broken, pages_of
 from documentation.staging import Stage, stage_documents
 from documentation.symptoms import SYMPTOMS
@@ -23,7 +24,6 @@ from documents import ROOT, read
 import jointid as jid
 from jointid.cli.command_table import HELP
 from jointid.identification.warnings.registry import finding_types
-from jointid.identification.warnings.table import in_place_of_the_table
 
 WITHOUT_SPHINX = "Sphinx is not installed: `pip install --group docs`"
 # What a newcomer asks: the clicks from the front page, and what the last page says.

@@ -15,6 +15,7 @@ from typing import get_args
 
 import jointid as jid
 from documentation.defective import GOOD, Case, cases
+from documentation.findings_tables import in_place_of_the_table
 from documentation.pictures import friction, windows
 from documentation.staging import ROOT, Stage
 from documentation.symptoms import SYMPTOMS
@@ -23,7 +24,6 @@ from jointid.cli.advice import words_of_action
 from jointid.estimate.findings import Finding, Severity
 from jointid.identification.warnings.check import FindingType
 from jointid.identification.warnings.registry import finding_types
-from jointid.identification.warnings.table import in_place_of_the_table
 
 
 def write_pictures(stage: Stage) -> None:
