@@ -38,6 +38,7 @@ def draw(gallery: Gallery) -> None:
     jid.identify(
         first_recording(),
         hanging_joint(),
+        residual="sensor",  # the residual of the thesis
         search=jid.Search("ga", ga=options, callback=seen.append),
     )
     with gallery.picture("3-2_dynamic_adaptation") as axes:

@@ -62,6 +62,7 @@ def run_grid(
         hanging_joint(),
         grid={"ga.population": populations, "ga.generations": generations},
         trials=trials,
+        residual="sensor",  # the residual of the thesis
         search=jid.Search("ga", ga=options),
     )
     cells: Cells = {}

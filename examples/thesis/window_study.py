@@ -36,7 +36,7 @@ def draw(gallery: Gallery) -> None:
         wrong = [errors(found(_identify(run, joint, count))) for run in runs]
         for name in TRUTH:
             size[name].append(float(np.sqrt(np.mean([error[name] ** 2 for error in wrong]))))
-    chosen = jid.identify(runs[0], joint, search="separable").residuals.windows
+    chosen = _identify(runs[0], joint, None).residuals.windows
     with gallery.picture("window_count") as axes:
         for number, name in enumerate(TRUTH):
             look = jid.plot.line_style(number)
@@ -56,5 +56,6 @@ def draw(gallery: Gallery) -> None:
         gallery.note("4.6", f"worst parameter's rms error, n = {count}", worst, "%")
 
 
-def _identify(run: jid.Recording, joint: jid.Joint, count: int) -> jid.Estimate:
-    return jid.identify(run, joint, windows=count, search="separable")
+def _identify(run: jid.Recording, joint: jid.Joint, count: int | None) -> jid.Estimate:
+    """Identify with the residual of the thesis."""
+    return jid.identify(run, joint, windows=count, residual="sensor", search="separable")

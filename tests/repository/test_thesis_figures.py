@@ -83,6 +83,30 @@ def test_each_drawn_figure_has_a_claim_on_the_page() -> None:
     assert {each for each in first if not any(each in place for place in places)} == set()
 
 
+def test_the_page_has_the_numbers_of_the_table() -> None:
+    page, table = PAGE.read_text(encoding="utf-8"), Table(ROOT / "docs/pictures/thesis/numbers.csv")
+    slow, subtracted = _map(table, "6-17", "as commanded"), _map(table, "6-18", "sensed torque")
+    for text in (
+        f"{table('4.6', 'n = 1000'):.2f} % with 1000, {table('4.6', 'n = 11999'):.2f} % with 11,999",
+        f"{table('6-14', 'closed loop', 'without ripple'):.0f} % off",
+        f"all are within {table('6-14', 'closed loop', 'with ripple'):.1f} %",
+        f"from {slow:.1f} to {subtracted:.1f} N·m",
+        f"the open-loop estimate is up to {table('6-18', 'open loop', 'without ripple'):.0f} % off, "
+        f"{table('6-18', 'open loop', 'with ripple'):.1f} % with",
+    ):
+        assert text in page
+
+
+def test_the_searches_of_the_thesis_minimize_its_residual() -> None:
+    """The default residual is another one, with which the genetic algorithm succeeds more often."""
+    programs = [
+        FOLDER / f"{name}.py"
+        for name in ("population_grid", "models_and_adaptation", "window_study")
+    ]
+    for path in (*programs, ROOT / "benchmarks/presets_study.py"):
+        assert 'residual="sensor"' in path.read_text(encoding="utf-8"), path.name
+
+
 def test_a_group_leaves_its_pictures(few: Path) -> None:
     _check_pictures(few, "4-8", "6-2")
 
