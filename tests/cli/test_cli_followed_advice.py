@@ -36,7 +36,7 @@ def test_only_identify_is_named_for_all_joints(capsys: pytest.CaptureFixture[str
 def test_all_joints_need_a_ratio_each(capsys: pytest.CaptureFixture[str]) -> None:
     assert "one ratio for each, comma-separated" in answer(["identify", str(JOINTS)], capsys)[1]
     assert main(["identify", str(JOINTS), "--joints", "1,2", "--quiet"]) == 2
-    assert "joint angle; one for each joint, comma-separated)" in capsys.readouterr().out
+    assert "joint angle; one value for each joint, comma-separated)" in capsys.readouterr().out
 
 
 def test_a_joint_file_is_no_joint_of_a_file(capsys: pytest.CaptureFixture[str]) -> None:
@@ -109,7 +109,7 @@ def test_a_folder_is_called_a_folder(tmp_path: Path, capsys: pytest.CaptureFixtu
     code, said = answer(["identify", str(tmp_path)], capsys)
     assert code == 2
     assert "this is a folder" in said
-    assert f"name its files, as in {tmp_path}" in said
+    assert f"name the files in it, as in {tmp_path}" in said
 
 
 def test_all_that_a_simulator_needs_is_advised_at_once(

@@ -183,7 +183,7 @@ def test_a_bar_stays_on_its_line(prepared: Path) -> None:
     ("line", "parts"),
     [
         ("a bb ccc" + " word" * 8, None),
-        ("jointid identify: the file holds 6 joints, and a recording has one", None),
+        ("jointid identify: the file holds 6 joints, but a recording has only one", None),
         ("next: jointid identify a.csv --column position='my enc' --quiet", "\\"),
     ],
 )

@@ -186,7 +186,7 @@ BAD: list[Bad] = [
     ),
     ("a.csv", marked("{"), {}, "line 1: the description of the recording is damaged JSON"),
     ("a.csv", marked("[]"), {}, "line 1: the description of the recording is not a JSON object"),
-    ("a.csv", marked('{"schema": 2}'), {}, "line 1: schema is 2: this version reads 1"),
+    ("a.csv", marked('{"schema": 2}'), {}, "line 1: schema is 2: this jointid reads schema 1"),
     (
         "a.csv",
         marked('{"schema": 1, "kind": "x"}'),

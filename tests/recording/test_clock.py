@@ -120,7 +120,9 @@ def test_a_rate_wins_over_stamps_and_says_so(tmp_path: Path) -> None:
     assert loaded.time.tolist() == TRUE.tolist()
     assert [each["column"] for each in loaded.metadata["left_out"]] == ["time_s"]
     both: dict[str, Any] = {"sample_period": PERIOD, "columns": {"time": "time_s"}}
-    with pytest.raises(jid.InputError, match=r"sample_period is 0\.0025: the time is in a column"):
+    with pytest.raises(
+        jid.InputError, match=r"sample_period is 0\.0025: the file has a time column"
+    ):
         jid.load(tmp_path / "a.csv", **both)
     for value in (0.0, -1.0, float("nan"), "fast"):
         with pytest.raises(jid.InputError, match="a positive number of seconds is expected"):

@@ -191,7 +191,7 @@ def test_protobuf_is_said_not_to_be_read(tmp_path: Path) -> None:
     message = refusal(path)
     assert_one_sentence(message, path)
     assert (
-        "topic /js: messages in the encoding 'protobuf' are not read, only cdr, ros1, json"
+        "topic /js: messages in the encoding 'protobuf' are not read; known encodings are cdr, ros1, json"
         in message
     )
 

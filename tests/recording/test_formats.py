@@ -289,7 +289,9 @@ def test_no_advice_where_no_column_numbers_the_runs(tmp_path: Path) -> None:
 
 def test_a_column_of_another_length_does_not_number_runs(tmp_path: Path) -> None:
     path = npz(tmp_path / "a.npz", time=TIME, position=ANGLE, run=np.arange(3))
-    with pytest.raises(InputError, match="'run' has 3 samples, but time has 10; rows are selected"):
+    with pytest.raises(
+        InputError, match="'run' has 3 samples, but time has 10; a column that selects"
+    ):
         load_runs(path, by="run")
 
 

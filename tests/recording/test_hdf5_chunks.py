@@ -161,7 +161,7 @@ def test_a_filter_that_makes_less_is_refused(size: int, tmp_path: Path) -> None:
     known = struct.pack("<III", *values)
     assert content.count(known) == 1
     path.write_bytes(content.replace(known, struct.pack("<III", *values[:2], size)))
-    assert "an LZF filter makes less than a chunk of 96 bytes" in _refused(path)
+    assert "the output of an LZF filter is smaller than a chunk of 96 bytes" in _refused(path)
 
 
 def test_a_chunk_larger_than_its_file_is_refused(tmp_path: Path) -> None:
@@ -172,7 +172,7 @@ def test_a_chunk_larger_than_its_file_is_refused(tmp_path: Path) -> None:
     known = struct.pack("<IIQQ", size, 0, 0, 0)  # of a chunk in the index: its size, mask and place
     assert content.count(known) == 1
     path.write_bytes(content.replace(known, struct.pack("<IIQQ", 2_600_000_000, 0, 0, 0)))
-    assert "a chunk says that it takes 2600000000 bytes of" in _refused(path)
+    assert "a chunk claims 2600000000 bytes, but the file has" in _refused(path)
 
 
 def test_all_chunks_together_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -194,7 +194,9 @@ def test_another_number_of_actions_is_no_wanted_position(
     assert "units={'position': 'deg'}" in refused(folder, partial(jid.load, joints="all"))
     read = jid.load(folder, joints="all", units={"position": "deg"})
     assert read.reference is None
-    says = "action is not read: it has 3 elements without the joints' names, and observation.state has 6"
+    says = (
+        "action is not read: its 3 elements have no joint names, and observation.state has 6 joints"
+    )
     assert read.metadata["of_no_joint"] == [says]
     assert main(["info", str(folder), "--unit", "position=deg"]) == 0
     assert f"read: {says}" in capsys.readouterr().out

@@ -75,8 +75,8 @@ def test_messages_in_a_log_are_said_with_the_way_to_them(bag: Path, tmp_path: Pa
     assert len(recording) == _COUNT - 15
     said = recording.metadata["incomplete"]
     assert said == (
-        f"its last messages may be in {path.name}-wal, which is not read: "
-        "SQLite merges both when it opens a copy of them"
+        f"its last messages may be in {path.name}-wal, which is not read. "
+        "To merge the two files, open a copy of both with SQLite"
     )
     assert _contents(path.parent) == before
     copy = _copied(path, tmp_path / "whole", "-wal")

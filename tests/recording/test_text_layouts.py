@@ -170,7 +170,8 @@ def test_a_slow_temperature_cuts_no_sample(count: int, tmp_path: Path) -> None:
         assert loaded.temperature is None
         (left_out,) = loaded.metadata["left_out"]
         assert (
-            left_out["reason"] == "its samples are from 0 to 0.1 s, the others' from 0 to 0.399 s"
+            left_out["reason"]
+            == "its samples are from 0 to 0.1 s, those of the others from 0 to 0.399 s"
         )
 
 

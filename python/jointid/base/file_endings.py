@@ -40,6 +40,6 @@ def no_ending(path: Path, endings: Sequence[str]) -> InputError:
         return InputError(
             f"this is a folder; {expected}",
             place=str(path),
-            remedy=f"name its files, as in {inside}",
+            remedy=f"name the files in it, as in {inside}",
         )
     return InputError(expected, place=str(path))

@@ -63,7 +63,7 @@ def read_bytes(path: Path) -> bytes:
         while chunk := file.read(min(_CHUNK, LARGEST + 1 - len(data))):
             data += chunk
             if len(data) > LARGEST:
-                raise InputError(f"too large: {LARGEST} bytes are allowed", place=str(path))
+                raise InputError(f"too large: at most {LARGEST} bytes are allowed", place=str(path))
     return bytes(data)
 
 
@@ -85,7 +85,7 @@ def read_json(text: str) -> Any:
         The text is not JSON, is nested too deeply, or is too large.
     """
     if len(text) > LARGEST:
-        raise InputError(f"too large: {len(text)} characters, {LARGEST} are allowed")
+        raise InputError(f"too large: {len(text)} characters, at most {LARGEST} are allowed")
     try:
         value = json.loads(text)
     except RecursionError:

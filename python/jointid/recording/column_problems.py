@@ -169,7 +169,7 @@ def missing(
     count = len(table.headers) if unnamed else 0
     if set(signals) == set(NEEDED) and count > _AT_MOST:
         return InputError(
-            f"{count} columns without names: their numbers do not show the signals",
+            f"{count} columns have no names, and their numbers do not show which signals they are",
             place=table.header_place,
             remedy=OF_BLOCKS,
         )
@@ -372,7 +372,7 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
             "call",
             {**arguments, "units": units},
             function="load",
-            text="with the units that they have",
+            text="with the unit of each column",
         )
     return Action("call", arguments, function="load")
 

@@ -114,7 +114,7 @@ class Contents:
         if self.table.saved is None and (large := too_large(signals)) is not None:
             signal, index = large
             damaged = InputError(
-                "no joint has such a value: it is damaged, or marks a missing value",
+                "no joint has such a value: the number is damaged, or marks a missing value",
                 argument=signal,
                 value=float(signals[signal][index]),
                 place=place(signal, index),
@@ -227,8 +227,8 @@ class Contents:
     def _check_length(self, header: str, length: int) -> None:
         if length != len(self.values["time"]):
             raise InputError(
-                f"{header!r} has {length} samples, but time has {len(self.values['time'])}; rows are "
-                "selected by a column as long as time",
+                f"{header!r} has {length} samples, but time has {len(self.values['time'])}; a "
+                "column that selects rows must have as many samples as time",
                 place=self.table.source,
             )
 

@@ -51,7 +51,7 @@ def as_stated(
     given = columns if isinstance(columns, Mapping) else {}
     if table.saved is not None or given.get("time") is not None:
         raise InputError(
-            "the time is in a column, too; give one of them",
+            "the file has a time column, too; give only one of the two",
             argument="sample_period",
             value=sample_period,
             place=table.source,

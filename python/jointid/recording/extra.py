@@ -181,10 +181,10 @@ def named_extra(wanted: object) -> dict[str, str | int]:
     for header in wanted:
         if isinstance(header, str) and not re.fullmatch(_NAME, header):
             raise InputError(
-                "this header cannot be a name, which has letters, digits and underscores",
+                "this header cannot be a name; a name has only letters, digits and underscores",
                 argument="extra",
                 value=header,
-                remedy=f"give it one: extra={{'{_suggested(header)}': {header!r}}}",
+                remedy=f"give the column such a name: extra={{'{_suggested(header)}': {header!r}}}",
             )
     return {str(header): header for header in wanted}
 

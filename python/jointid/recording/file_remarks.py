@@ -30,7 +30,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
         found.append("times are those of the logger: the messages have no stamps")
     for name, what in (
         ("repeated_messages", "repeat another one and are left out"),
-        ("reordered_messages", "come after a later one and are put in order"),
+        ("reordered_messages", "are older than the message before and are sorted by time"),
     ):
         count = metadata.get(name)
         if isinstance(count, int) and count:
@@ -65,7 +65,7 @@ def remarks(metadata: Mapping[str, Any]) -> list[str]:
             1e3 * float(rounded.get(key, 0.0)) for key in ("resolution", "period")
         )
         found.append(
-            f"stamps in steps of {resolution:.4g} ms are read as even, every {period:.4g} ms"
+            f"time stamps in steps of {resolution:.4g} ms are replaced by even ones, every {period:.4g} ms"
         )
     cut = metadata.get("cut_samples")
     if isinstance(cut, int) and cut:

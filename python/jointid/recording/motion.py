@@ -71,8 +71,8 @@ def small_motion(recording: Recording) -> SmallMotion | None:
             unchanged=unchanged,
             noise=noise,
             text=f"the joint stands still: its position varies by {travel:.2g} {unit}, like noise",
-            details=f"the noise has a standard deviation of {noise:.2g} {unit}; or the joint moves too fast for these "
-            "samples",
+            details=f"the noise has a standard deviation of {noise:.2g} {unit}; the joint may also move too fast for "
+            "this sampling rate",
         )
     if travel >= _FEWEST * step:
         return None
@@ -113,7 +113,7 @@ def raise_if_still(recordings: Sequence[Recording]) -> None:
             place=f"recording {number}{f' ({recording.name})' if recording.name else ''}",
             remedy=(
                 *(("leave this recording out",) if len(recordings) > 1 else ()),
-                Action("record", text="motion, for there is no friction to identify at rest"),
+                Action("record", text="motion: a joint at rest shows no friction"),
                 Action("inspect", text="which column is the position"),
             ),
         )

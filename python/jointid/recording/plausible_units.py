@@ -90,7 +90,7 @@ def unlikely_sizes(
         if signal in signals and values is not None:
             largest = float(np.abs(values).max())
             if largest > times * limit:
-                reason = f"up to {largest:.4g}: {largest / 1e3:.3g} {unit} if these are {smaller}"
+                reason = f"up to {largest:.4g}; in {smaller} this is {largest / 1e3:.3g} {unit}"
                 found[signal] = ProposedUnit(smaller, reason)
     return found
 
@@ -133,7 +133,7 @@ def _changed(recording: Recording, angle: str, speed: str, slope: float) -> dict
 def _angle(position: FloatArray, unit: str) -> ProposedUnit:
     low, high = float(position.min()), float(position.max())
     turns = (high - low) / (2.0 * math.pi)
-    return ProposedUnit(unit, f"{low:.4g} to {high:.4g}, in rad {turns:.3g} turns")
+    return ProposedUnit(unit, f"{low:.4g} to {high:.4g}; in rad this is {turns:.3g} turns")
 
 
 def _slope(rate: FloatArray, velocity: FloatArray) -> float:

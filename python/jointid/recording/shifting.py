@@ -40,7 +40,7 @@ def checked_shift(shift: object) -> dict[str, float]:
     for name, value in shift.items():
         if name not in SHIFTED:
             raise InputError(
-                f"delays are those of {', '.join(SHIFTED)} against the position",
+                f"only these signals have a delay against the position: {', '.join(SHIFTED)}",
                 argument="shift",
                 value=name,
             )

@@ -172,8 +172,8 @@ def _unstated_torque(
 def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
     names = " and ".join(other_sides)
     return InputError(
-        f"the position is the {side}'s and the {names} the {next(iter(other_sides.values()))}'s; the gear ratio is "
-        "needed to combine them",
+        f"the position is on the {side} side, but the {names} on the {next(iter(other_sides.values()))} side; the gear "
+        "ratio is needed to combine them",
         argument="gear_ratio",
         value=None,
         remedy=Action("call", {"gear_ratio": ...}, function="load"),

@@ -18,7 +18,7 @@ _DATES = (978_307_200.0, 4_102_444_800.0)  # s since 1970: 2001 to 2100
 _UPTIME = 1e8  # s, three years: no clock runs longer after power-on
 _FILE_TIMES = (1.2e17, 1.5e17)  # 1981 to 2076
 _ETHERCAT = (5e17, 9e17)  # ns since 2000: 2015 to 2028
-_COUNTED = Action("call", {"sample_period": ...}, "if they count the rows", "load")
+_COUNTED = Action("call", {"sample_period": ...}, "if the stamps count the rows", "load")
 _HOPELESS = 1e10  # a step that is too long in every unit
 
 

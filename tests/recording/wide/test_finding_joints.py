@@ -124,7 +124,7 @@ def test_a_robot_of_many_joints_is_refused(tmp_path: Path, monkeypatch: pytest.M
     path = tmp_path / "a.csv"
     rows = "\n".join(",".join([f"{k / 1000}", *["0"] * len(names)]) for k in range(20))
     path.write_text(f"time,{','.join(names)}\n{rows}\n")
-    with pytest.raises(jid.InputError, match="a robot of 257 joints; at most 256 are read"):
+    with pytest.raises(jid.InputError, match="the robot has 257 joints; at most 256 are read"):
         jid.load_robot(path)
     asked: list[int] = []
     real = finding_joints._numbered

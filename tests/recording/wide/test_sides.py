@@ -44,7 +44,8 @@ def test_signals_of_both_sides_need_the_ratio(tmp_path: Path) -> None:
     path, _ = columns_of(tmp_path, "motor_position", "joint_torque")
     for load in (lambda: jid.load(path, joint=1), lambda: jid.load_robot(path)):
         with pytest.raises(
-            jid.InputError, match=r"position is the motor's and the torque the j.*gear_ratio=\.\.\."
+            jid.InputError,
+            match=r"position is on the motor side, but the torque on the j.*gear_ratio=\.\.\.",
         ):
             load()
 

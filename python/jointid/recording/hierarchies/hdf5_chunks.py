@@ -69,15 +69,15 @@ def take(dataset: Any, room: Room) -> None:
         )
     for code, _, values, _ in described:
         if code == _LZF and (len(values) < 3 or values[2] < size):  # exactly the expected size
-            raise ValueError(f"an LZF filter makes less than a chunk of {size} bytes")
+            raise ValueError(f"the output of an LZF filter is smaller than a chunk of {size} bytes")
     most = dataset.file.id.get_filesize()
     for chunk, place in _chunks(dataset):
         if chunk.size > most:  # the library would reserve this much memory
-            raise ValueError(f"a chunk says that it takes {chunk.size} bytes of {most}")
+            raise ValueError(f"a chunk claims {chunk.size} bytes, but the file has {most}")
         held = _held(dataset, chunk, place, filters, size)
         if known and held is not None and held != size:
             least = "more than" if held > size else f"{held} of"
-            raise ValueError(f"a chunk holds {least} {size} bytes")
+            raise ValueError(f"a chunk holds {least} the expected {size} bytes")
 
 
 def _held(

@@ -51,7 +51,7 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None, incomple
     raise InputError(
         f"no topic holds joints, as sensor_msgs/JointState does; topics are {_listed(filled)}",
         place=str(path),
-        remedy=_load(filled[0], "one of them, and name its columns"),
+        remedy=_load(filled[0], "or another topic, and name its columns"),
     )
 
 

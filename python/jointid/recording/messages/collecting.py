@@ -53,7 +53,7 @@ def collect(source: Source, topic: Topic) -> Collected:
     """
     if topic.encoding not in READ:
         raise DamageError(
-            f"messages in the encoding {topic.encoding!r} are not read, only {', '.join(READ)}"
+            f"messages in the encoding {topic.encoding!r} are not read; known encodings are {', '.join(READ)}"
         )
     decoder = JsonDecoder(topic) if topic.encoding == "json" else BinaryDecoder(topic)
     blocks: list[Block] = []

@@ -118,7 +118,9 @@ def _by_lists(
             continue
         joints = listed or [f"joint_{number}" for number in range(1, lengths[place] + 1)]
         if lengths[place] != len(joints):
-            raise DamageError(f"it has {len(joints)} joints, but {lengths[place]} of {signal}")
+            raise DamageError(
+                f"it has {len(joints)} joints, but {lengths[place]} values of {signal}"
+            )
         for number, joint in enumerate(joints):
             _enter(found, joint, signal, where[*place, number])
     return found

@@ -142,7 +142,7 @@ class MessageTable:
                 f"the position jumps by {jump:.3g} and back from message to message, as if two nodes publish the "
                 "same joint on one topic",
                 place=f"{self.source}, column {self.headers[column]!r}",
-                remedy="log one of them, or each on a topic of its own",
+                remedy="log only one node, or each node on its own topic",
             )
 
     def _present(self, column: int) -> npt.NDArray[np.bool_]:
@@ -159,15 +159,17 @@ class MessageTable:
         _, signal = self._columns[missing - 2]
         remedy: tuple[str | Action, ...] = ()
         if len({joint for joint, _ in wanted}) > 1:
-            remedy = ("load one joint at a time: they are logged at different times",)
+            remedy = ("load one joint at a time: the joints are logged at different times",)
         elif signal != "position":
             named = {"effort": "torque"}.get(signal, signal)
             remedy = (
                 Action("call", {"columns": {named: None}}, function="load", text="without it"),
-                "log it in all messages",
+                "log this signal in all messages",
             )
         return InputError(
-            "messages at this time do not hold it", place=self.place(missing, row), remedy=remedy
+            "messages at this time do not hold this signal",
+            place=self.place(missing, row),
+            remedy=remedy,
         )
 
     def _holds_numbers(self, column: Column) -> bool:

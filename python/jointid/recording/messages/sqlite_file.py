@@ -93,8 +93,8 @@ def _left_beside(path: Path) -> str:
     with suppress(OSError):
         if log.stat().st_size:
             return (
-                f"its last messages may be in {log.name}, which is not read: SQLite merges both when it opens a copy "
-                "of them"
+                f"its last messages may be in {log.name}, which is not read. To merge the two files, "
+                "open a copy of both with SQLite"
             )
     with suppress(OSError), journal.open("rb") as file:
         if file.read(len(_UNFINISHED)) == _UNFINISHED:

@@ -119,7 +119,7 @@ def _named(headers: Sequence[str], info: Mapping[str, Any]) -> tuple[list[str], 
             unit = f" [{_UNIT}]" if signal in ("position", "velocity", "reference") else ""
             found.append(f"{joint}.{signal}{unit}")
     return found, [
-        f"{each} is not read: it has {counts[each]} elements without the joints' names, and {_STATE} has {len(joints)}"
+        f"{each} is not read: its {counts[each]} elements have no joint names, and {_STATE} has {len(joints)} joints"
         for each in of_none
     ]
 

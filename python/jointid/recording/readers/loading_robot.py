@@ -117,10 +117,10 @@ def load_robot(
     names = _wanted(joints, known, table.header_place)
     if len(names) > _MOST_JOINTS:
         raise InputError(
-            f"a robot of {len(names)} joints; at most {_MOST_JOINTS} are read",
+            f"the robot has {len(names)} joints; at most {_MOST_JOINTS} are read",
             argument="joints",
             place=table.header_place,
-            remedy="name those that belong together",
+            remedy="name the joints that belong together",
         )
     wanted = named_extra(extra)
     tables = [JointTable(table, each, columns or {}, wanted) for each in names]
@@ -176,10 +176,10 @@ def load_robot(
     if len(sides) > 1:
         shown = ", ".join(f"{each}: {own}" for each, (own, _) in zip(names, each_side, strict=True))
         raise InputError(
-            f"some joints have positions of the motor, others of the joint ({shown})",
+            f"some positions are on the motor side, others on the joint side ({shown})",
             argument="joints",
             place=table.header_place,
-            remedy="load those of one side",
+            remedy="load only joints of one side",
         )
     if any(others for _, others in each_side):
         fields = _at_joint(names, tables, fields, gear_ratio, each_side)

@@ -137,10 +137,14 @@ def _variable(matrix: memoryview, order: str, *, nested: bool) -> Variable:
     if int(flags[0]) & _COMPLEX:
         imaginary = _numbers(_next(parts), order)
         if len(imaginary) != len(array):
-            raise DamageError(f"the variable {name[:40]!r} has a part of another length")
+            raise DamageError(
+                f"the variable {name[:40]!r} has real and imaginary parts of different length"
+            )
         array = array + 1j * imaginary.astype(np.float64)
     if len(array) != math.prod(shape):
-        raise DamageError(f"the variable {name[:40]!r} has {len(array)} values for {shape}")
+        raise DamageError(
+            f"the variable {name[:40]!r} has {len(array)} values for the shape {shape}"
+        )
     return Variable(name=name, array=array.reshape(shape, order="F"))
 
 

@@ -78,7 +78,7 @@ def _content(source: Any) -> bytes:
         return read.encode()
     if isinstance(read, bytes):
         return read
-    raise InputError("a file is expected that is open for reading", argument="path", value=source)
+    raise InputError("a file that is open for reading is expected", argument="path", value=source)
 
 
 def _file_name(source: Any, content: bytes) -> str:

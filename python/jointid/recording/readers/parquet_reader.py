@@ -160,8 +160,8 @@ class ParquetTable:
         values = self._values(column)
         if pyarrow.types.is_temporal(values.type):
             raise InputError(
-                f"the column holds {values.type}; numbers are expected, for time seconds since the "
-                "start",
+                f"the column holds {values.type}; numbers are expected (for time: seconds since "
+                "the start)",
                 place=self._place(column),
             )
         if values.null_count:

@@ -171,4 +171,4 @@ class _Reader:
         return self._content[self.place - count : self.place]
 
     def _damaged(self) -> ValueError:
-        return ValueError(f"what begins at byte {self._start} is damaged")
+        return ValueError(f"the part that begins at byte {self._start} is damaged")

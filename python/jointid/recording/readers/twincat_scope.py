@@ -183,7 +183,7 @@ class ScopeTable:
         period = median(np.diff(time)) if len(time) > 1 else 0.0
         if time[0] - period > base[0] or time[-1] + period < base[-1]:
             raise InputError(
-                f"its samples are from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, the others' from "
+                f"its samples are from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, those of the others from "
                 f"{base[0] / 1e3:.6g} to {base[-1] / 1e3:.6g} s",
                 place=f"{self.source}, channel {self.headers[column]!r}",
             )

@@ -151,7 +151,7 @@ def _choose_torque(
 def _without_side(table: Table, column: JointHeader) -> InputError:
     return InputError(
         f"{table.headers[column.index]!r} does not say on which side of the gear it is, and the position of joint "
-        f"{column.joint} is the motor's",
+        f"{column.joint} is on the motor side",
         place=table.header_place,
         remedy=(
             _naming("motor_torque", column, "if it is the motor's"),

@@ -126,7 +126,7 @@ def which_joint(table: Table, joints: Sequence[str]) -> InputError:
     """Return the error for a file with several joints if none is named."""
     shown = ", ".join(joints[:12]) + (", ..." if len(joints) > 12 else "")
     return InputError(
-        f"the file holds {len(joints)} joints ({shown}), and a recording has one",
+        f"the file holds {len(joints)} joints ({shown}), but a recording has only one",
         place=table.header_place,
         remedy=(
             Action(

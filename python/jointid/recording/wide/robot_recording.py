@@ -109,7 +109,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         check_attributes(kind, torque_hold, name, velocity_derived)
         if side not in SIDES:
             raise InputError(
-                f"{JOINT} or {MOTOR} is expected: where position, velocity and torque are",
+                f"{JOINT} or {MOTOR} is expected: the side of position, velocity and torque",
                 argument="side",
                 value=side,
             )

@@ -167,7 +167,7 @@ def value_of_each(argument: str, values: object, joints: int, function: str) -> 
     if array.shape == (1,) and joints > 1 and np.isfinite(array[0]) and array[0] != 0.0:
         single = float(array[0])
         raise InputError(
-            f"one {what} is given for {joints} joints, and joints have different ones",
+            f"one {what} is given for {joints} joints, but each joint has its own",
             argument=argument,
             value=single,
             remedy=Action(
