@@ -93,16 +93,18 @@ def test_another_ending_is_refused(tmp_path: Path) -> None:
 def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:
     path = tmp_path / "hand.toml"
     path.write_text('[trajectory]\nform = "thesis"\n', encoding="utf-8")
-    with pytest.raises(
-        jid.InputError, match=r"hand\.toml: this is a motion without a table \[design\]"
-    ):
+    with pytest.raises(jid.InputError, match=r"hand\.toml: this motion has no table \[design\]"):
         jid.load_design(path)
 
 
 @pytest.mark.parametrize(
     ("before", "after", "says"),
     [
-        ("schema = 1", "schema = 2", "schema is 2: this jointid reads up to 1; update jointid"),
+        (
+            "schema = 1",
+            "schema = 2",
+            "schema is 2: this jointid reads schemas up to 1; update jointid",
+        ),
         ("schema = 1", "", "schema: this is missing"),
         ('criterion = "worst"', 'criterion = "best"', r"design\.criterion: .*known are worst, det"),
         ('weakest = "sensor_gain"', 'weakest = "gain"', r"design\.weakest: .*in \[expected\]"),
@@ -174,7 +176,9 @@ def test_the_file_simulates_the_same(path: Path) -> None:
 def test_a_session_does_not_run_the_file_of_a_later_jointid(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace("schema = 1", "schema = 2", 1), encoding="utf-8")
-    with pytest.raises(jid.InputError, match=r"schema is 2: this jointid reads up to 1; update"):
+    with pytest.raises(
+        jid.InputError, match=r"schema is 2: this jointid reads schemas up to 1; update"
+    ):
         load_motion(path)
 
 

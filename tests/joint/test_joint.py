@@ -619,7 +619,7 @@ def test_a_file_that_cannot_be_used(tmp_path: Path, text: str, said: str) -> Non
     ("content", "said"),
     [
         (b"", "schema: it is missing; write schema = 2"),
-        (b"schema = 3", "schema is 3: this jointid reads up to 2; update jointid"),
+        (b"schema = 3", "schema is 3: this jointid reads schemas up to 2; update jointid"),
         (b"schema = 0", "schema is 0: 2 is expected"),
         (b"schema = true", "schema is True: 2 is expected"),
         (b"schema = '1'", "schema is '1': 2 is expected"),

@@ -40,7 +40,7 @@ def test_a_file_gives_them_back(tmp_path: Path) -> None:
         ("torque_constant = -1.0", r"\[tolerances\]: torque_constant .*0 or more"),
         ("torque_constant = true", r"\[tolerances\]: torque_constant"),
         ('torque_konstant = "5 %"', r"\[tolerances\]: .*did you mean 'torque_constant'"),
-        ("inertia = 0.1", "inertia .*the fact itself is not given"),
+        ("inertia = 0.1", "inertia .*the joint does not state this fact"),
         ('mass = "5 %"', "mass .*there is no link"),
         ('mass_tolerance = "5 %"', r"\[tolerances\].*no such key"),
     ],

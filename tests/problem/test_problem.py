@@ -97,7 +97,9 @@ def test_a_motor_side_signal_needs_a_joint() -> None:
     error = refused(jid.Recording(**MOTION, motor_torque=np.cos(7.0 * TIME)))
     ratio, joint = map(str, error.remedy)
     assert ratio == "load with gear_ratio=... (motor angle per joint angle)"
-    assert joint == "identify with joint=... (with gear_ratio, which converts it)"
+    assert (
+        joint == "identify with joint=... (with the joint's gear_ratio, which converts the torque)"
+    )
     commanded = {"commanded_torque": "target_moment_{joint}"}
     error = refused(jid.Recording(**MOTION, current=np.cos(7.0 * TIME), metadata=commanded))
     assert (
@@ -124,7 +126,7 @@ def test_milliseconds_that_are_taken_for_seconds_are_no_standstill() -> None:
     motion = {"position": MOTION["position"], "velocity": 7.0 * np.cos(7.0 * TIME)}
     slow = jid.Recording(time=500.0 * TIME, torque=RECORDING.torque, **motion)
     error = refused(slow)
-    assert "milliseconds seem to be taken for seconds" in str(error)
+    assert "the time stamps are probably in milliseconds" in str(error)
     # At a usual rate the reason is the motion's.
     still = jid.Recording(
         time=TIME,

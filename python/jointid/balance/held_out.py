@@ -34,9 +34,9 @@ def block_starts(start: Array, count: int, joints: int = 1) -> Array:
         There are too few windows for this number of blocks.
     """
     if start.size < count * _FEWEST * joints:
-        joint, of_each = (f" of {joints} joints", " of each") if joints > 1 else ("", "")
+        joint, of_each = (f" of {joints} joints", " of each joint") if joints > 1 else ("", "")
         raise InputError(
-            f"the recording has {start.size} windows{joint}, and each block needs at least {_FEWEST}{of_each}",
+            f"the recording has {start.size} windows{joint}, but each block needs at least {_FEWEST}{of_each}",
             argument="folds",
             value=count,
             remedy="use fewer folds, or shorter windows",

@@ -85,7 +85,7 @@ def _check_tolerances(joint: JointFields, owner: str) -> None:
             )
         if not isinstance(stated, str) and facts.get(name, stated) is None:
             raise InputError(
-                "the fact itself is not given",
+                "the joint does not state this fact",
                 argument=name,
                 value=stated,
                 place=f"{owner}: tolerances",

@@ -232,7 +232,7 @@ class Joint(JointFields):
         if recording.current is None:
             raise InputError(
                 "the recording has no signal torque, motor_torque or current",
-                remedy="identify its recordings alone: its input is a voltage"
+                remedy="identify the recordings of this joint separately: the input of its drive is a voltage"
                 if self.voltage is not None
                 else Action("call", {"columns": {"torque": ...}}, function="load"),
             )

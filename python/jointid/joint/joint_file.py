@@ -209,7 +209,7 @@ def _check_schema(document: Mapping[str, Any], source: str) -> None:
         raise InputError(f"{SCHEMA} is expected", argument="schema", value=schema, place=source)
     if schema > SCHEMA:
         raise InputError(
-            f"this jointid reads up to {SCHEMA}",
+            f"this jointid reads schemas up to {SCHEMA}",
             argument="schema",
             value=schema,
             place=source,

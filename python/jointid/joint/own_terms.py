@@ -230,7 +230,7 @@ def _own_term(signal: str, text: str) -> OwnTerm:
             centre = float("nan")
         if kind not in CENTRED or not abs(centre) < 1e6:
             raise InputError(
-                f"only {' and '.join(CENTRED)} have a centre, an angle in rad",
+                f"only {' and '.join(CENTRED)} have a centre (an angle in rad)",
                 argument=place,
                 value=text,
             )
@@ -239,10 +239,12 @@ def _own_term(signal: str, text: str) -> OwnTerm:
             f"for the joint's own position, only {' and '.join(CENTRED)} can be identified",
             argument=place,
             value=text,
-            remedy="give another signal as an extra one",
+            remedy="load another signal with `extra`",
         )
     own = OwnTerm(signal=signal, kind=kind, rate=rate, centre=centre)
     for key in own.keys:
         if not _core.is_parameter(key):
-            raise InputError("it cannot name a parameter", argument=place, value=signal)
+            raise InputError(
+                "this signal cannot be part of a parameter's name", argument=place, value=signal
+            )
     return own

@@ -160,7 +160,9 @@ def voltage_of(table: dict[str, Any]) -> VoltageDrive | None:
         raise InputError(f"it is unknown; {suggestion(kind, INPUTS)}", argument="input", value=kind)
     if kind == "torque":
         for key, value in given.items():
-            raise InputError('this is of a drive with input = "voltage"', argument=key, value=value)
+            raise InputError(
+                'only a drive with input = "voltage" has this key', argument=key, value=value
+            )
         return None
     loop = given.get("position_loop")
     if loop is not None:

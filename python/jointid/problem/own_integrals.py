@@ -106,7 +106,7 @@ def centred(own: OwnTerms, recordings: Sequence[Recording]) -> OwnTerms:
         if each.kind in CENTRED:
             if each.signal == POSITION and recordings[0].kind == "prismatic":
                 raise InputError(
-                    "the position of a prismatic joint is no angle",
+                    "the position of a prismatic joint is not an angle",
                     argument=f"terms.{POSITION}",
                     value=str(each),
                 )

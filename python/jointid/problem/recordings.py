@@ -73,7 +73,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         travel = highest - lowest
         if not run.velocity_derived and run.ranges["velocity"] == (0.0, 0.0) and travel > 0.0:
             raise InputError(
-                f"it is always 0, but the position changes by {travel:.3g}: drivers that do not measure it log zeros",
+                f"it is always 0, but the position changes by {travel:.3g}: a driver without this measurement logs 0",
                 argument="velocity",
                 place=place,
                 remedy=Action(
@@ -108,7 +108,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         for earlier in alike:
             if _same(runs[earlier], run):
                 raise InputError(
-                    f"it is the same as recording {earlier}, and its noise would count as that of two",
+                    f"it is the same as recording {earlier}; the identification would count its noise as independent",
                     place=place,
                     remedy="give each recording once",
                 )
@@ -156,15 +156,15 @@ def _check_magnitudes(run: Recording, place: str) -> None:
             index = int(beyond[0])
             rest = float(np.abs(np.delete(values, beyond)).max())
             raise InputError(
-                f"{len(beyond)} sample(s) of this size, the first at {float(run.time[index]):.6g} s, while all "
-                f"others stay within {rest:.3g}: these are not measured values",
+                f"{len(beyond)} sample(s) have this size, the first at {float(run.time[index]):.6g} s, but all "
+                f"others are at most {rest:.3g}: these samples are not measured values",
                 argument=name,
                 value=float(values[index]),
                 place=place,
                 remedy="cut such samples out, and check the logger",
             )
         raise InputError(
-            "no measured signal has this as its largest magnitude",
+            "the largest value of a measured signal cannot have this size",
             argument=name,
             value=largest,
             place=place,
@@ -193,7 +193,7 @@ def raise_if_slowly_sampled(recordings: Sequence[Recording]) -> None:
 def _of_stamps(run: Recording, number: int) -> InputError:
     unit = time_unit(run.sample_period)
     return InputError(
-        f"the samples are {run.sample_period:.3g} s apart: {TIME_UNITS[unit]} seem to be taken for seconds",
+        f"the samples are {run.sample_period:.3g} s apart: the time stamps are probably in {TIME_UNITS[unit]}",
         argument="time",
         place=run.name or f"recording {number}",
         remedy=Action("call", {"units": {"time": unit}}, function="load"),
@@ -214,7 +214,12 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
         return recording.torque
     facts = {"torque_constant": ..., "gear_ratio": ...}
     for signal, needs in (
-        ("motor_torque", Action("call", {"joint": ...}, "with gear_ratio, which converts it")),
+        (
+            "motor_torque",
+            Action(
+                "call", {"joint": ...}, "with the joint's gear_ratio, which converts the torque"
+            ),
+        ),
         ("current", Action("call", facts, "facts of motor and gear", "Joint")),
     ):
         if getattr(recording, signal) is not None:

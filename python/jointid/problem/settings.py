@@ -80,8 +80,8 @@ class SignalOptions(TypedDict, total=False):
         Parameters | None,
         Option(
             kind="mapping, optional",
-            help='Changes by parameter name: a number fixes the parameter; {"value", "min", "max", "vary"} or a '
-            "`Parameter` changes these fields. Values are in SI units.",
+            help='Changes by parameter name: a number fixes the parameter; a mapping of "value", "min", "max" or '
+            '"vary", or a `Parameter`, changes these fields. Values are in SI units.',
             checked=_or_none(_mapping),
             flag="--set",
             phrase="fix a parameter (SI)",
@@ -178,7 +178,7 @@ class ModelOptions(TypedDict, total=False):
             "Default: the model's.",
             flag="--term",
             phrase="own term: a column (or --extra) and its kind: viscous, coulomb, known, scaled, inertia, ...; "
-            "viscous@rate+coulomb@rate: of its rate; may be repeated",
+            "viscous@rate uses the column's derivative; join kinds by +; may be repeated",
             form="texts by name",
             metavar="SIGNAL=KIND",
         ),
@@ -192,13 +192,13 @@ class SpeedOptions(TypedDict, total=False):
         float | None,
         Option(
             kind="float, optional",
-            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: automatic: "
+            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: "
             "0, except if slow motion contradicts the friction at faster motion (creep); always 0 for models with "
             'friction that depends on slow motion, such as "stribeck". See the estimate\'s `slow_motion`.',
             checked=_or_none(_speed),
             flag="--min-speed",
-            phrase="leave out motion slower than this, rad/s or m/s; 0: leave out nothing (default: chosen from the "
-            "data)",
+            phrase="leave out motion slower than this speed, rad/s or m/s; 0: leave out nothing (default: chosen from "
+            "the data)",
             form="number",
         ),
     ]

@@ -24,7 +24,7 @@ Residual = Literal["instruments", "sensor", "torque"]
 RESIDUALS: tuple[str, ...] = get_args(Residual)
 
 
-WEAK_READING = "the motion explains too little of the reading"
+WEAK_READING = "the motion explains too little of the sensor's reading"
 """Reason why the reading of a sensor is not projected on the motion."""
 
 
@@ -114,7 +114,7 @@ def choose_terms(
         )
     if model.ripple and joint is None:
         raise InputError(
-            "its orders are per motor revolution, but no joint with a gear_ratio is given",
+            "ripple orders are per motor revolution, but no joint with a gear_ratio is given",
             argument="ripple",
             value=list(model.ripple),
             remedy="give a joint with its gear_ratio",

@@ -100,7 +100,7 @@ def check_schema(document: Mapping[str, Any]) -> None:
     schema = document.get("schema")
     if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
         raise InputError(
-            f"this jointid reads up to {SCHEMA}",
+            f"this jointid reads schemas up to {SCHEMA}",
             argument="schema",
             value=schema,
             remedy="update jointid",
