@@ -166,7 +166,7 @@ def test_counts_of_an_encoder_are_told(well: jid.Recording, recorded: bool) -> N
     wrong = jid.Recording(time=well.time, position=counts, velocity=velocity, torque=well.torque)
     estimate = jid.identify(wrong, model="coulomb_viscous", search="separable")
     finding = next(each for each in estimate.findings if each.code == "implausible_units")
-    assert "in counts of the encoder" in finding.cause
+    assert "may also be encoder counts" in finding.cause
     scaled = ("position", "velocity") if recorded else ("position",)
     advised = [dict(each.arguments) for each in finding.advice]
     assert {"scale": dict.fromkeys(scaled, ...)} in advised
@@ -177,7 +177,9 @@ def test_one_wild_sample_is_told_as_one(well: jid.Recording) -> None:
     torque = well.torque.copy()
     torque[777] = 1e300
     wrong = jid.Recording(time=well.time, position=well.position, torque=torque)
-    with pytest.raises(jid.InputError, match=r"1 sample\(s\) of this size, the first at 0\.777 s"):
+    with pytest.raises(
+        jid.InputError, match=r"1 sample\(s\) have this size, the first at 0\.777 s"
+    ):
         jid.identify(wrong)
 
 

@@ -139,7 +139,7 @@ class Cause:
         """Effect on the values, as a clause."""
         if not self.harmful:
             return f"it {self.harmless}"
-        return self.effect or f"with it in the model, {self.changes}"
+        return self.effect or f"with this effect in the model, {self.changes}"
 
     @property
     def changes(self) -> str:
@@ -285,7 +285,7 @@ def _document(cause: Cause) -> dict[str, Any]:
 def _sentence(cause: Cause) -> str:
     """Return the cause and its remedies as a sentence."""
     advice = "; or ".join(filter(None, map(str, cause.advice)))
-    return f"{cause.name}: {cause}{f'; do: {advice}' if advice else ''}."
+    return f"{cause.name}: {cause}{f'; advice: {advice}' if advice else ''}."
 
 
 def _rebuilt(values: dict[str, Any]) -> Cause:
@@ -301,4 +301,4 @@ def _seconds(value: float) -> str:
 
 
 def _in_errors(size: float) -> str:
-    return f"{size:.2g} of its {'error' if size < 1.0 else 'errors'}"
+    return f"{size:.2g} of its standard {'error' if size < 1.0 else 'errors'}"

@@ -130,8 +130,8 @@ def no_values(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable[Obje
         )
         yield Objection(
             code="undetermined",
-            reason=f"compensation and simulation need {' and '.join(merged)}, but this recording determines no "
-            f"single value of them{sums}",
+            reason=f"compensation and simulation need {' and '.join(merged)}, but this recording does not "
+            f"separate their values{sums}",
             blocking=True,
             parameters=merged,
         )

@@ -131,13 +131,13 @@ class Rollout(Result):
         worst = max(self.runs, key=lambda run: run.error)
         shown = "median" if len({run.kind for run in self.runs}) == 1 else "largest"
         error = self.median if shown == "median" else worst.error
-        text = f"Mean position error, {shown} of {len(self.runs)}: {worst.shown(error):.3g} {worst.unit}"
+        text = f"Mean position error, {shown} of {len(self.runs)} runs: {worst.shown(error):.3g} {worst.unit}"
         if self.horizon is not None:
             text += f", over stretches of {self.horizon:g} s that begin at the logged state"
         known = [run.before for run in self.runs if run.before is not None]
         if known and shown == "median":
             before = float(np.median(known))
-            text += f"; {worst.shown(before):.3g} {worst.unit} by the URDF without friction"
+            text += f"; {worst.shown(before):.3g} {worst.unit} with the URDF and without friction"
         return f"{text}."
 
     def report(self, *, verbose: bool = False) -> str:

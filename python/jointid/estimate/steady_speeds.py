@@ -89,7 +89,7 @@ class SteadyFriction:
         lines = [
             *("friction map of steady speeds", "", *aligned(table), ""),
             f"speeds     {self.speeds[0]:.4g} … {self.speeds[1]:.4g} {speed} in {ways}, {self.rows} rows{rest}",
-            f"fit        misses {two_digits(self.rms)} {torque} rms, {percent(self.share)} of the torque",
+            f"fit        residual {two_digits(self.rms)} {torque} rms, {percent(self.share)} of the torque",
             "missing    inertia and gravity: a table of steady speeds has no acceleration and no position; record "
             "time, position and torque of a motion for them",
         ]
@@ -139,8 +139,8 @@ def steady_friction(velocity: Array, torque: Array, kind: str = "revolute") -> S
     fits = [fit for terms in _models(directions) if (fit := _fitted(terms, v, tau)) is not None]
     if not fits:
         raise InputError(
-            f"{len(v)} rows at {len(set(np.abs(v).tolist()))} speeds other than 0; a friction map needs at least "
-            f"{2 + _SPARE} rows and two speeds, of each direction that it has"
+            f"{len(v)} rows with {len(set(np.abs(v).tolist()))} different speeds other than 0; a friction map needs at "
+            f"least {2 + _SPARE} rows and two speeds in each of its directions"
         )
     _, values, errors, rms = min(fits, key=lambda fit: fit[0])
     speeds = np.abs(v)

@@ -155,8 +155,8 @@ def _refinements(estimate: EstimateRecord) -> list[tuple[str, str]]:
             (
                 "slow motion",
                 f"{percent(slow.share)} of the motion, below {slow.speed:.3g} {length}/s, is left out: its friction "
-                f"differs by {rounded(slow.excess, slow.stderr)} ± {two_digits(slow.stderr)} {torque} from what "
-                "faster motion shows",
+                f"differs by {rounded(slow.excess, slow.stderr)} ± {two_digits(slow.stderr)} {torque} from the "
+                "friction of faster motion",
             )
         )
     return lines

@@ -31,7 +31,7 @@ class CompareOptions(FitOptions, SearchOptions, total=False):
         float,
         Option(
             kind="float",
-            help="As in `identify`, the same for all models. Default 0: all motion counts.",
+            help="Same as in `identify`, with one value for all models. Default 0: no motion is left out.",
             default=0.0,
         ),
     ]

@@ -126,7 +126,7 @@ class Engine:
         if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
             return replace(outcome, balance=balance)
         found = _core.polish(direct, domain.lower, domain.upper, best)
-        message = f"{outcome.message}, and a polish by the direct sum, which did not agree"
+        message = f"{outcome.message}; a polish by the direct sum followed, because the two sums did not agree"
         return replace(outcome, best=found.best, message=message)
 
 
@@ -171,7 +171,7 @@ def separable(
         return _found(projected.found, f"{_effort(projected.found)}, by projection")
     ready = engine()
     found = _core.minimise_separable(ready.form, lower, upper, threads=search.threads)
-    message = "least squares, as no shape is searched"
+    message = "least squares, because no shape is searched"
     if free_shapes(penalty, domain):
         message = f"{_effort(found)}, not by projection: {projected.reason}"
     return ready.verified(_found(found, message), domain)

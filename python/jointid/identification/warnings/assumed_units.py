@@ -63,7 +63,7 @@ def _shows_seconds(inspected: Inspected, assumed: Sequence[str]) -> bool:
 def _sizes(recording: Recording, signals: Sequence[str]) -> list[str]:
     """Return the largest torque or current in the assumed unit, so that a reader sees whether it is possible."""
     return [
-        f"{name} is then up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
+        f"in this unit, {name} is up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
         for name in DRIVE
         if name in signals and getattr(recording, name) is not None
     ]
@@ -71,7 +71,7 @@ def _sizes(recording: Recording, signals: Sequence[str]) -> list[str]:
 
 def _all_of(names: Sequence[str]) -> str:
     """Return the names that do not fit into a title."""
-    return "" if listed(names, _ROOM) == ", ".join(names) else f"in all: {', '.join(names)}"
+    return "" if listed(names, _ROOM) == ", ".join(names) else f"complete list: {', '.join(names)}"
 
 
 def _pairs(value: object) -> tuple[tuple[object, object], ...]:

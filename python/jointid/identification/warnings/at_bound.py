@@ -46,7 +46,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             measured[f"{p.name}.share"] = Measured(share)
         if small and limit == 0.0:
             yield AT_BOUND.finding(
-                f"{p.name} is 0, its bound: at most {two_digits(may_be)} {p.unit}, "
+                f"{p.name} is 0, its bound; it is at most {two_digits(may_be)} {p.unit}, "
                 f"{percent(share or 0.0)} of all friction",
                 evidence=measured,
                 parameters=(p.name,),
@@ -63,7 +63,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield AT_BOUND.finding(
             f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}".rstrip(),
             *advice,
-            details="the best value lies beyond the bound, or the data do not determine it; other values are affected",
+            details="the best value is beyond the bound, or the data do not determine it; other values are affected",
             evidence=measured,
             parameters=(p.name,),
         )

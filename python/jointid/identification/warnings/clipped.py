@@ -107,7 +107,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
                     "motion with a smaller load on the link",
                     sensor_range=_sensed(evidence, signal),
                 ),
-                details="the true torque is larger there",
+                details="the true torque is larger in these samples",
                 evidence={"clipped": Measured(share)},
                 parameters=evidence.sensor_parameters,
             )
@@ -121,7 +121,11 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
                 f"{name} is at its limit of {limit:.4g} {unit} in {percent(share)} of the samples",
                 other_motion(evidence, "gentler motion", gentler=True),
                 Action("record", text="the torque that the drive applied"),
-                details=(f"the model misses {percent(missed)} of the torque; " if clipped else "")
+                details=(
+                    f"the model does not explain {percent(missed)} of the torque; "
+                    if clipped
+                    else ""
+                )
                 + "if only the log was clipped and not the torque, every value is wrong",
                 evidence={
                     "clipped": Measured(share),

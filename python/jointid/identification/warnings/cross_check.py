@@ -27,7 +27,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     pairs, measured = [], {}
     for name in second.contradicted:
         p, other = evidence.parameters[name], second.values[name].value
-        pairs.append(f"{name} {other:.3g} (here {p.shown_value:.3g})")
+        pairs.append(f"{name} {other:.3g} (estimate {p.shown_value:.3g})")
         measured[name] = Measured(p.shown_value, p.unit)
         measured[f"{name}.second"] = Measured(other, p.unit)
     shown = listed(pairs, _ROOM)
@@ -35,7 +35,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         f"the cross-check disagrees: {shown}",
         Action("inspect", text="position, velocity and torque over time"),
         details="a plain least squares on the recorded signals gives these values"
-        + ("" if shown == ", ".join(pairs) else f"; in all: {', '.join(pairs)}"),
+        + ("" if shown == ", ".join(pairs) else f"; complete list: {', '.join(pairs)}"),
         evidence=measured,
         parameters=second.contradicted,
     )

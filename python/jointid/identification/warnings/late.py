@@ -27,7 +27,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     yield LATE.finding(
         f"{left_out} of {intervals} intervals ({percent(left_out / intervals)}) have late or lost samples",
         Action("inspect", text="what delays the bus or the computer"),
-        details=f"they are left out; {missing} cycles are missing, or commands were not confirmed",
+        details=f"these intervals are left out; {missing} cycles are missing, or commands were not confirmed",
         evidence={
             "left_out": Measured(left_out),
             "intervals": Measured(intervals),

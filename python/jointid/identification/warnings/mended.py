@@ -43,7 +43,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             yield HELD_TORQUE.finding(
                 "the torque is assumed to be held between samples: the balance then predicts better",
                 Action(
-                    "call", {"torque_hold": "zoh"}, text="to state it; linear if it is measured"
+                    "call",
+                    {"torque_hold": "zoh"},
+                    text="to state this; linear for a measured torque",
                 ),
                 evidence={"period": Measured(mend.size, "s")},
             )

@@ -64,7 +64,7 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
             return few
     for name in SHAPES:
         if name in found and found[name].at_bound is not None and name in evidence.bounds_from_data:
-            return f"{name} ended on the bound of what the data show", {
+            return f"{name} ended on the edge of the range that the data show", {
                 name: Measured(found[name].value, found[name].unit)
             }
     return None
@@ -104,7 +104,7 @@ def _seen_in_few(
     if error <= _SIGNIFICANT * value:
         return None
     return (
-        f"{p.name} rests on {_FEW} of {len(own)} windows",
+        f"only {_FEW} of {len(own)} windows determine {p.name}",
         {
             f"{p.name}.elsewhere": Measured(value, p.unit),
             f"{p.name}.elsewhere_stderr": Measured(error, p.unit),

@@ -92,7 +92,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if header:
         severity, details = "blocking", f"{_CAUSE}; the torque's header is {header!r}"
     yield NO_FRICTION.finding(
-        f"the torque contains no friction: at most {percent(share)} of it while the joint moves",
+        f"the torque contains no friction: at most {percent(share)} of the torque while the joint moves",
         Action("inspect", text=_REMEDY),
         *((_as_sensor(header),) if header else ()),
         details=details,

@@ -46,8 +46,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     yield NOISY_SIGNAL.finding(
         f"{text}{listed(sizes, TITLE - len(text))}",
         Action("record", text=f"{listed(noisy, _NAMES)} with less noise"),
-        details=f"standard deviation: {listed(deviations)}; the coefficient of a noisy signal is too small by about as "
-        "much; computed with a simulated second recording",
+        details=f"standard deviation of the noise: {listed(deviations)}; the coefficient of a noisy signal is too "
+        "small by about this share; the shares are computed with a simulated second recording",
         evidence={f"{name}.moved": Measured(share) for name, share in moved.items()}
         | {f"{name}.noise": Measured(sigma) for name, sigma in noise.noise},
         parameters=tuple(moved),

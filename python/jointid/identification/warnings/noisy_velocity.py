@@ -50,10 +50,10 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     named = list(moved)
     if limited:
         share = evidence.residuals.noise_share
-        about = "about that much" if share < HIDES else "far"
+        about = f"about {percent(share)}" if share < HIDES else "far"
         causes.append(f"noise is {percent(share)} of the velocity's change over a window")
         details.append(f"inertia is {about} too small")
-        details.append("windows of every length have more than 1 % of noise")
+        details.append("windows of every length have more than 1 % noise")
         measured["noise_share"] = Measured(share)
         inertia = evidence.parameters.get("inertia")
         if inertia is not None and inertia.vary and "inertia" not in named:
@@ -63,7 +63,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         text = "velocity noise moves "
         causes.append(f"{text}{listed(sizes, TITLE - len(text))}")
         details += filter(
-            None, (_resolution(evidence), "computed with a simulated second recording")
+            None,
+            (_resolution(evidence), "these changes are computed with a simulated second recording"),
         )
         measured |= {f"{name}.moved": Measured(share) for name, share in moved.items()}
     # With the stamps of a busy computer the position's rate is wrong, even if it looks quiet.

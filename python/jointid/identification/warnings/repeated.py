@@ -29,7 +29,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         yield REPEATED_SAMPLES.finding(
             f"{percent(max(stale.values()))} of the {' and '.join(stale)} samples repeat the previous one",
             Action("record", text="at the sampling rate of the drive"),
-            details="the joint moves there; the logger was faster than the bus of the drive",
+            details="the joint moves during these samples; the logger was faster than the bus of the drive",
             evidence={f"{name}.repeated": Measured(share) for name, share in stale.items()},
         )
 

@@ -73,7 +73,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if peak is not None:
         cause = evidence.cause_of("ripple", f"{peak.multiple:g}", min(peak.share, 1.0))
         harmful = cause is None or cause.harmful
-        does = "it biases gain and static friction" if cause is None else cause.does
+        does = "the ripple biases gain and static friction" if cause is None else cause.does
         measured = {
             "multiple": Measured(peak.multiple),
             "amplitude": Measured(peak.amplitude, "N·m"),

@@ -54,13 +54,13 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if severity == "info":
         yield IMPLAUSIBLE_UNITS.finding(
             f"{seen}, as a wheel or a spindle does",
-            details="for a joint with stops, the position would be in degrees",
+            details="if the joint has stops, the position is probably in degrees",
             evidence=measured,
             severity=severity,
         )
         return
     signals = ("position",) if recording.velocity_derived else ("position", "velocity")
-    details = "or the gear ratio is wrong"
+    details = "the gear ratio may also be wrong"
     if evidence.joint is not None and "motor_speed" in measured and _is_converted(recording):
         sides = {"side": dict.fromkeys(signals, "motor"), "gear_ratio": evidence.joint.gear_ratio}
         yield IMPLAUSIBLE_UNITS.finding(
@@ -74,9 +74,9 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         return
     advice = [degrees_advice(recording, signals)]
     if whole:
-        details = "or in counts of the encoder, as all positions are whole numbers; " + details
+        details = "all positions are whole numbers and may also be encoder counts; " + details
         scale = dict.fromkeys(signals, ...)
-        advice.append(Action("call", {"scale": scale}, "2π over the counts per turn", "load"))
+        advice.append(Action("call", {"scale": scale}, "2π over the counts per revolution", "load"))
     yield IMPLAUSIBLE_UNITS.finding(
         f"{seen}: the position is probably in degrees",
         *advice,

@@ -41,9 +41,9 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             height = f"{spike.height:.3g} {unit}".rstrip()
             time = float(recording.time[spike.index])
             yield SPIKES.finding(
-                f"{name} has a spike of {height} at {time:.4g} s (spikes in all: {spike.count})",
+                f"{name} has a spike of {height} at {time:.4g} s (number of spikes: {spike.count})",
                 Action("inspect", text="the logger, and delete the rows with spikes"),
-                details="the signal leaves its course for one sample",
+                details="a spike is one sample far from its neighbours",
                 evidence={
                     "spikes": Measured(spike.count),
                     "height": Measured(spike.height, unit),

@@ -35,7 +35,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     )
     if not correlation > _CORRELATED:  # only the uncertain values show it
         title = (
-            f"{listed(uncertain, _ROOM)} uncertain, although well excited (r = {correlation:.2f})"
+            f"uncertain although well excited: {listed(uncertain, _ROOM)} (r = {correlation:.2f})"
         )
         makes = "the model lacks an effect, or the windows are too long to show it"
     # If all intervals are narrow, including the effect of the residual, the finding is an info.
@@ -73,7 +73,7 @@ def excluded(evidence: Evidence, what: str = "it") -> str:
     """
     if evidence.causes is not None and evidence.causes.harmless:
         cause = evidence.causes.harmless[0]
-        return f"{cause.meaning}: explains {percent(cause.share)} of {what}, and is harmless"
+        return f"{cause.meaning} explains {percent(cause.share)} of {what} and is harmless"
     count = len(evidence.causes.excluded) if evidence.causes is not None else 0
     return f"none of {count} known causes explains {what}" if count else ""
 

@@ -39,12 +39,12 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     # Repeated rows make even stamps wrong, even if these look regular.
     even = not copies and as_uniform < 0.3 * as_stamped
     seen = "; the samples themselves look evenly spaced" if even else ""
-    seen = "; without the copies" if copies else seen
+    seen = "; repeated rows are not counted" if copies else seen
     advice = "even time stamps" if even else "time stamps where the samples are taken"
     yield TIME_JITTER.finding(
         f"time stamps are off by {1e6 * as_stamped:.3g} µs ({percent(as_stamped / period)} of the sample period)",
         Action("record", text=advice),
-        details=f"the position shows it; a busy computer causes such time stamps{seen}",
+        details=f"the position shows this; a busy computer causes such time stamps{seen}",
         evidence={
             "scatter": Measured(as_stamped, "s"),
             "scatter_about_even_times": Measured(as_uniform, "s"),

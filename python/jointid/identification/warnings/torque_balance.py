@@ -159,7 +159,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
         yield IMPLAUSIBLE_UNITS.finding(
             seen,
             degrees_advice(evidence.recordings[0], ("position", "velocity")),
-            details="that is the factor from degrees to radians",
+            details="this is the factor from degrees to radians",
             evidence=measured,
             parameters=("inertia",),
         )
@@ -172,7 +172,7 @@ def _inertia_contradicts(evidence: Evidence, free: Unbounded) -> Iterator[Findin
             "inspect",
             text="gear ratio, torque constant, torque unit and inertia; correct the wrong one",
         ),
-        details=f"{_gear_hint(evidence, ratio)}until that is corrected, every value is wrong",
+        details=f"{_gear_hint(evidence, ratio)}until this error is corrected, every value is wrong",
         evidence=measured,
         parameters=("inertia", *scaled_with_torque(evidence)),
     )

@@ -49,7 +49,10 @@ def _of_gear(joint: Joint, recording: Recording, signal: str, ratio: float) -> I
     elif signal == "torque" and _near(ratio / gear) and of_motor:
         yield Action("call", {"side": {"torque": "joint"}}, "if it is the joint's", "load")
     elif signal == "current" and _near(ratio / gear) and constant is not None:
-        right, text = float(f"{constant / gear:.6g}"), "if the constant is that behind the gear"
+        right, text = (
+            float(f"{constant / gear:.6g}"),
+            "if the stated torque constant is behind the gear",
+        )
         yield Action("call", {"torque_constant": right}, text, "Joint")
 
 

@@ -25,12 +25,14 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         return  # a known inertia shows the side: a contradiction is reported as a wrong scale
     if stated.get("assumed_side") == "torque" and isinstance(ratio, int | float):
         yield TORQUE_SIDE.finding(
-            f"is the torque the motor's, too? Then all values are {abs(ratio):.4g} times as large",
-            Action("call", {"side": {"torque": "motor"}}, "if the drive reports it", "load"),
+            f"is the torque on the motor side, too? Then all values are {abs(ratio):.4g} times as large",
+            Action(
+                "call", {"side": {"torque": "motor"}}, "if the drive reports the torque", "load"
+            ),
             Action(
                 "call",
                 {"side": {"torque": "joint"}},
-                "if it is measured or computed behind the gear",
+                "if the torque is measured or computed behind the gear",
                 "load",
             ),
             details="the motion is on the motor side; the torque is assumed to be on the joint side",

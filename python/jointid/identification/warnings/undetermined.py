@@ -277,7 +277,7 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
     if scale > 0.0 and shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
         text = (
-            f"{p.name} moves by {percent(shift / scale)}, {shift / chance:.1f} random errors, when the windows are "
+            f"{p.name} moves by {percent(shift / scale)} ({shift / chance:.1f} random errors) when the windows are "
             "halved or doubled"
         )
         measured = {

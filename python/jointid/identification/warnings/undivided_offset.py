@@ -25,7 +25,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         unit = found[each.offset].unit
         known = {"parameters": {each.offset: ...}}
         yield UNDIVIDED_OFFSET.finding(
-            f"{each.offset} and the two Coulomb frictions look the same (sum {total:.4g} {unit})",
+            f"{each.offset} and the two Coulomb frictions look the same (their sum: {total:.4g} {unit})",
             Action("call", known, text="if you know the offset"),
             details="no motion separates them; the Coulomb frictions are shown as equal",
             evidence={"coulomb_sum": Measured(total, unit)},

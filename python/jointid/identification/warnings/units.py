@@ -60,7 +60,7 @@ def unit_by_factor(
             advice = Action("call", {**side, "units": units}, function="load")
             return (
                 f"{' and '.join(units)} {verb} to be in {' and '.join(units.values())}"
-                + f", and the {signal} the motor's" * bool(signal),
+                + f", and the {signal} on the motor side" * bool(signal),
                 (advice,),
             )
     return "", (Action("inspect", text="the units of position, velocity and time"),)

@@ -54,7 +54,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     possible = [possible_side(found.scale)] * (large and ratio is None)
     if gear is not None:
         yield VELOCITY_MISMATCH.finding(
-            f"{rate}: the {gear[0]} is the motor's",
+            f"{rate}: the {gear[0]} is on the motor side",
             gear[1],
             details="the gear ratio explains the factor",
             evidence=scale,
@@ -93,7 +93,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             *(advice if suspected else possible),
             *([] if suspected or (facts and wrong) else [_WITHOUT_VELOCITY]),
             *(() if suspected else advice),
-            details="the log states no unit for it" if suspected else "",
+            details="the log states no unit for this signal" if suspected else "",
             evidence=scale,
             severity="blocking" if wrong else None,
         )
@@ -141,7 +141,7 @@ def raise_if_far_off(recordings: Sequence[Recording]) -> None:
         found = inspect(run).found.agreement
         if found is not None and 0.0 < abs(found.scale) < 1.0 / _OTHER_UNIT:
             raise InputError(
-                f"the position moves by {found.scale:.4g} times its integral",
+                f"the position moves by {found.scale:.4g} times the integral of the velocity",
                 argument="velocity",
                 place=f"recording {number}",
                 remedy=(
