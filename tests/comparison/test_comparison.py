@@ -162,7 +162,10 @@ def test_the_simplest_within_one_standard_error_wins() -> None:
     ]
     judged, winner, reason = judge(entries)
     assert judged[winner].model == "also_middle"
-    assert "simplest model within one standard error of the best, rich with 10.0 ± 1.0 %" in reason
+    assert (
+        "simplest model within one standard error of the best, rich (residual 10.0 ± 1.0 %)"
+        in reason
+    )
     assert [entry.reason.split(",")[0] for entry in judged] == [
         "not significantly better",
         "not significantly better",
@@ -315,7 +318,7 @@ def test_same_bits_again(comparison: jid.Comparison, well_excited: jid.Recording
 def test_report_json_and_html(comparison: jid.Comparison) -> None:
     text = comparison.report(verbose=True)
     assert "5 folds, one block of the recording held out in each" in text
-    assert "winner: stribeck" in text
+    assert "chosen: stribeck" in text
     document = json.loads(comparison.to_json())
     assert document["schema"] == 1
     assert document["winner"] == "stribeck"
@@ -326,7 +329,7 @@ def test_report_json_and_html(comparison: jid.Comparison) -> None:
     page = comparison._repr_html_()
     assert page.count("<tr ") == 3
     assert "<b>Use stribeck: usable.</b>" in page
-    assert "winner stribeck" in repr(comparison)
+    assert "chosen stribeck" in repr(comparison)
 
 
 def test_the_callback_sees_every_fit() -> None:

@@ -101,7 +101,7 @@ def test_several_recordings_are_held_out_whole(path: Path) -> None:
 
 def test_text_and_json_say_the_same(found: jid.RobotComparison) -> None:
     text = found.report(verbose=True)
-    assert "winner: inertia urdf, stribeck" in text
+    assert "chosen: inertia urdf, stribeck" in text
     assert "chosen" in text
     document = json.loads(found.to_json())
     assert document["winner"] == {"inertia": "urdf", "model": "stribeck"}
@@ -145,7 +145,7 @@ def test_one_command(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert len(lines) <= 8 + 2
     assert max(map(len, lines[:-1])) <= 100
     assert main([*line, "-v"]) == 0
-    assert "winner: inertia urdf, coulomb_viscous" in capsys.readouterr().out
+    assert "chosen: inertia urdf, coulomb_viscous" in capsys.readouterr().out
     assert "torque that the candidate was not fitted to" in page.read_text(encoding="utf-8")
     assert jid.RobotEstimate.load(saved).inertia == "urdf"
     assert main([*line, "--json"]) == 0

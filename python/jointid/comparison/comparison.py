@@ -120,7 +120,7 @@ def compare_models(
         usual = {name: option.default for name, option in options_of(CompareOptions).items()}
         if folds != 5 or callback is not None or options != usual:
             raise InputError(
-                "a servo takes only the option models here; compare(recordings, servo) has more",
+                "for a servo, only the option models is allowed here; compare(recordings, servo) has more options",
                 argument="score",
                 value=score,
             )

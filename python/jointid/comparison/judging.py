@@ -77,8 +77,10 @@ def _sentence(able: Sequence[Entrant], winner: Entrant, best: Entrant) -> str:
     if winner is not best:
         return (
             f"{winner.name} ({count}) is the simplest model within one standard error of the best, "
-            f"{best.name} with {score}; its residual is {100.0 * winner.score:.3g} %"
+            f"{best.name} (residual {score}); its own residual is {100.0 * winner.score:.3g} %"
         )
     simpler = any(each.parameters < winner.parameters for each in able)
     rest = ", and no simpler model is within one standard error of it" if simpler else ""
-    return f"{winner.name} ({count}) predicts held-out motion best, {score}{rest}"
+    return (
+        f"{winner.name} ({count}) predicts held-out motion best, with a residual of {score}{rest}"
+    )

@@ -95,7 +95,7 @@ class Comparison(KeptResult):
 
     def __repr__(self) -> str:
         scores = ", ".join(f"{row.model} {100.0 * row.score:.3g} %" for row in self.rows)
-        return f"Comparison({scores}; winner {self.winner})"
+        return f"Comparison({scores}; chosen {self.winner})"
 
     def report(
         self, action: Callable[[Action], str] = str, saved: str = "", *, verbose: bool = False
@@ -145,7 +145,7 @@ class Comparison(KeptResult):
             f"not compared: {model}: {reason}"
             for model, reason in self.settings["left_out"].items()
         ]
-        return printable("\n".join([*lines, f"winner: {self.winner}", self.reason, *self._said()]))
+        return printable("\n".join([*lines, f"chosen: {self.winner}", self.reason, *self._said()]))
 
     def to_pandas(self) -> pd.DataFrame:
         """Return a row for each model, in the order of the call, as a data frame. It needs pandas.

@@ -98,7 +98,7 @@ class RobotComparison(KeptResult):
         lines += ["", "held-out residual of each joint"]
         lines += aligned([["", *self.models], *self.joint_cells()])
         lines += ["", *(f"not compared: {name}: {why}" for name, why in self._left_out.items())]
-        return printable("\n".join([*lines, f"winner: {self.winner.name}", self.reason]))
+        return printable("\n".join([*lines, f"chosen: {self.winner.name}", self.reason]))
 
     def to_dict(self) -> dict[str, Any]:
         """Return everything in JSON's types; the estimate has the format of `RobotEstimate.to_dict`."""
@@ -207,7 +207,7 @@ class RobotComparison(KeptResult):
 
     def __repr__(self) -> str:
         scores = ", ".join(f"{row.name} {100.0 * row.score:.3g} %" for row in self.rows)
-        return f"RobotComparison({scores}; winner {self.winner.name})"
+        return f"RobotComparison({scores}; chosen {self.winner.name})"
 
 
 _PLAIN = ("inertia", "model", "parameters", "score", "stderr", "fold_scores", "reason")
