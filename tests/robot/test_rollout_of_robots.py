@@ -101,7 +101,7 @@ def test_the_page_shows_each_joint(
 ) -> None:
     page = jid.save_report(found, tmp_path / "arm.html", rollout=rolled).read_text("utf-8")
     section = page.partition('id="rollouts"')[2]
-    assert "by the URDF without friction" in section
+    assert "with the URDF and without friction" in section
     assert section.count("deg mean error") >= 2
 
 

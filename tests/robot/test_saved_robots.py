@@ -136,7 +136,7 @@ def test_the_place_is_named(tmp_path: Path) -> None:
         (("joints", "elbow", "model"), '"coulomb_viscous"', "does not fit"),
         (("joints", "elbow", "parameters", "coulomb", "name"), '"static"', "not the name"),
         (("joints", "elbow", "windows", "start"), "[1.0]", "same length"),
-        (("joints", "elbow", "windows", "recording", 0), "1", "not so many recordings"),
+        (("joints", "elbow", "windows", "recording", 0), "1", "contains fewer recordings"),
         (("base_parameters", 1, "name"), '"Iyy_1 + 0.16 m_2 + rotor_1"', "twice"),
         (("free", 0), '"shoulder.current"', "none of the parameters"),
         (("free", 0), '"shoulder.viscous"', "there twice"),

@@ -74,7 +74,7 @@ def test_a_torque_without_sign_is_said(capsys: pytest.CaptureFixture[str]) -> No
     found, said = identified("identify log.csv --robot arm.urdf", capsys)
     blocking = [each.code for each in found.findings if each.severity == "blocking"]
     assert blocking == ["unsigned_torque"], said
-    assert "they have lost their sign" in said
+    assert "their signs are missing" in said
 
 
 @pytest.mark.parametrize("folder", ["robot-06-current-taken-as-torque"], indirect=True)

@@ -165,7 +165,8 @@ def _models(models: object, robot: Robot) -> list[str]:
     names = [friction_models(each, robot.names)[0] for each in found]
     if {name_of(each) for each in names} - set(MODELS):
         raise InputError(
-            f"{', '.join(MODELS)} are expected, also as NAME:asymmetric; each joint's model is then chosen",
+            f"expected are {', '.join(MODELS)}, each also as NAME:asymmetric. Name no joints: the comparison chooses "
+            "each joint's model.",
             argument="models",
             value=models,
         )
@@ -186,7 +187,9 @@ def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> Compared
             if measured > 0.0:
                 scores[fold, joint] = float(np.linalg.norm(missed[place])) / measured
     if np.all(np.isnan(scores), axis=1).any():
-        raise InputError("no joint moves in one of the blocks", argument="folds", value=len(scores))
+        raise InputError(
+            "in one of the blocks, no joint moves", argument="folds", value=len(scores)
+        )
     means = np.nanmean(scores, axis=1)
     return ComparedRobotModel(
         inertia=mode,

@@ -16,16 +16,16 @@ class RobotFitOptions(MaskOptions, total=False):
         float | None,
         Option(
             kind="float or int, optional",
-            help="Duration of the windows [s]; a whole number is their count. Default: by the noise of the "
-            "velocities, at most 0.1 s; closer to 0.1 s for recordings longer than some minutes.",
+            help="Duration of the windows [s]; a whole number is the number of windows. Default: from the noise of the "
+            "velocities, at most 0.1 s; closer to 0.1 s for recordings of several minutes or more.",
         ),
     ]
     min_speed: Annotated[
         float | Sequence[float] | Mapping[str, float] | None,
         Option(
             kind="float, sequence or mapping of float, optional",
-            help="Slower motion of a joint is left out [rad/s or m/s]; one for all, one per joint, or by "
-            "name. Default 0.",
+            help="Motion of a joint below this speed is left out [rad/s or m/s]: one speed for all joints, one per "
+            "joint, or a mapping by name. Default 0.",
         ),
     ]
     shift: Annotated[
@@ -35,8 +35,8 @@ class RobotFitOptions(MaskOptions, total=False):
             help='Delay of the "torque" against the position [s], to be removed; positive: the torque is late. One '
             "for all joints, a sequence with one for each, or a mapping by joints' names, e.g. "
             '``{"torque": 0.001}``; "torque_filter" is the time constant of its low-pass filter [s]. An '
-            "empty mapping shifts nothing. Default: identified: one delay for all joints, another for a joint that "
-            "clearly differs, or a filter if it explains more. A torque that is early by more than one sample is "
+            "empty mapping shifts nothing. Default: identified, with one delay for all joints, another for a joint "
+            "that clearly differs, or a filter if it explains more. A torque that is early by more than one sample is "
             "reported and not shifted.",
         ),
     ]

@@ -78,7 +78,7 @@ def cross_checked(
         parameters=found,
         residuals=residuals,
         agrees=(all(said) and not worse) if said or worse else None,
-        reason="" if said or worse else "it determines none of the values",
+        reason="" if said or worse else "the cross-check determines none of the values",
     )
 
 
@@ -106,7 +106,7 @@ def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Comp
     if joint not in look.matrix:
         return Compared(value=value, stderr=stderr, reason="too few rows of fast motion")
     if name == "rotor_inertia" and look.recorded:
-        reason = "the recorded velocity explains more, but it may be late, which looks like inertia"
+        reason = "the recorded velocity explains more, but a late velocity looks like inertia"
         return Compared(value=value, stderr=stderr, reason=reason)
     label = (joint, name)
     second, error, spread = look.values[label], look.errors[label], look.spread[label]
@@ -117,7 +117,9 @@ def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Comp
     felt = float(np.sqrt(np.mean(column**2))) or 1.0
     little = _MATTERS * look.size[joint] / felt
     if not doubt < max(_VAGUE * scale, little):
-        return Compared(value=value, stderr=stderr, reason="it is not determined well enough")
+        return Compared(
+            value=value, stderr=stderr, reason="the cross-check does not determine it well enough"
+        )
     return Compared(
         value=value,
         stderr=stderr,
@@ -172,7 +174,9 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
     )
     if worse:
         joint, (ours, second) = max(worse.items(), key=lambda each: each[1][0] / each[1][1])
-        title = f"leaves {percent(second)} of the torque of {joint}, not {percent(ours)}"
+        title = (
+            f"leaves {percent(second)} of the torque of {joint} unexplained, not {percent(ours)}"
+        )
         texts.append(f"it {title}")
         advice = ()
     yield TYPES["cross_check"].finding(

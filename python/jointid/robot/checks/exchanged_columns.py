@@ -155,10 +155,12 @@ def _finding(
     was, after = percent(float(np.sqrt(before))), percent(float(np.sqrt(found.left)))
     pairs = zip(robot.names, right, strict=True)
     return TYPES[code].finding(
-        titled(title, f"{was} unexplained, corrected {after}"),
+        titled(title, f"{was} unexplained, {after} if corrected"),
         advice,
         details="; ".join(
-            f"{name} is in the {what} of {column}" for name, column in pairs if name in moved
+            f"the values of {name} are in the {what} of {column}"
+            for name, column in pairs
+            if name in moved
         ),
         severity="blocking",
         evidence={"before": Measured(np.sqrt(before)), "after": Measured(np.sqrt(found.left))},

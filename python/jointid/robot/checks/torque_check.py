@@ -98,8 +98,8 @@ def _several(
     return TYPES["different_factors"].finding(
         f"the torques of {listed(names)} differ from the URDF, each by its own factor",
         _divided(robot, factors),
-        details=f"{shown}: one {one} was probably used for all joints; with these factors "
-        f"{percent(float(np.sqrt(left / len(sure))))} of the torques stays unexplained, without "
+        details=f"factors: {shown}; one {one} was probably used for all joints; with these factors "
+        f"{percent(float(np.sqrt(left / len(sure))))} of the torques stays unexplained, without them "
         f"{percent(float(np.sqrt(before / len(sure))))}",
         evidence={robot.names[joint]: Measured(sure[joint].value) for joint in off},
     )
@@ -201,12 +201,12 @@ def _unsigned(
         return None
     names = [robot.names[joint] for joint in folded]
     return TYPES["unsigned_torque"].finding(
-        f"the torque of {names[0]} is never negative: it has lost its sign"
+        f"the torque of {names[0]} is never negative: its sign is missing"
         if len(names) == 1
-        else f"the torques of {listed(names)} are never negative: they have lost their sign",
+        else f"the torques of {listed(names)} are never negative: their signs are missing",
         Action(
             "inspect",
-            text="the driver's signed value (for a servo without one, the sign of its position error)",
+            text="the driver's signed value (if a servo has no such value: the sign of its position error)",
         ),
         details="the joints move both ways, and the magnitude fits a torque that changes its sign"
         + (f"; joints: {', '.join(names)}" if len(names) > 1 else ""),
@@ -261,16 +261,16 @@ def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Fin
     sign = ", and reversed" if common < 0.0 else ""
     left = percent(float(np.sqrt(np.median([e.left for e in given.values()]))))
     what = (
-        "the gains are probably not the robot's, or the masses of the URDF are not"
+        "the gains or the masses of the URDF are probably not those of the robot"
         if robot.drive is not None
-        else "they are probably currents or motor-side torques"
+        else "the torques are probably currents or motor-side torques"
         if size < 1.0
-        else "they are probably in another unit, or the masses of the URDF are not the robot's"
+        else "the torques are probably in another unit, or the masses of the URDF are not those of the robot"
     )
     return TYPES["scaled_torques"].finding(
         f"all torques are about {times} than the weight of the URDF's links{sign}",
         _divided(robot, [sure.get(joint, common) for joint in range(robot.n)]),
-        details=f"{what}; with one factor for each joint the URDF explains all but {left} of them",
+        details=f"{what}; with one factor for each joint the URDF explains all but {left} of the torques",
         evidence={
             "factor": Measured(common),
             **{robot.names[joint]: Measured(value) for joint, value in sure.items()},
@@ -297,7 +297,7 @@ def _in_degrees(signals: Sequence[PlainSignals], robot: Robot) -> Finding:
     joint = int(np.argmax(np.where(robot.tree.prismatic, 0.0, moved)))
     size = float(moved[joint])
     return TYPES["implausible_unit"].finding(
-        f"positions are probably in degrees, not radians: {robot.names[joint]} moves by {size:.3g}",
+        f"positions are probably in degrees, not radians: {robot.names[joint]} would move by {size:.3g} rad",
         Action("call", {"units": {"position": "deg"}}, function="load_robot"),
         severity="blocking",
         evidence={"range": Measured(size, "rad")},

@@ -31,14 +31,14 @@ def assumption_findings(
         if columns == list(range(robot.n)) and not set(taken) & set(robot.names):
             pairs = zip(robot.names, taken, strict=True)
             yield TYPES["joints_in_order"].finding(
-                "the recording does not name the URDF's joints; they are taken in order",
+                "the recording does not name the URDF's joints; its joints are taken in the URDF's order",
                 details=", ".join(f"{name} is {each}" for name, each in pairs),
             )
             break
     yield from _left_out(recordings)
     yield from _locked(recordings, robot)
     if not np.any(robot.tree.gravity):
-        yield TYPES["no_gravity"].finding("no gravity acts on this robot, as the facts say")
+        yield TYPES["no_gravity"].finding("according to the facts, no gravity acts on this robot")
     yield from _units(recordings, robot, attempt)
 
 
@@ -52,7 +52,7 @@ def _left_out(recordings: Sequence[RobotRecording]) -> Iterator[Finding]:
         )
     if others:
         yield TYPES["joints_left_out"].finding(
-            f"{listed([*others])} left out: logged at other times than the robot's joints",
+            f"left out: {listed([*others])}, logged at other times than the robot's joints",
             details="; ".join(f"{name}: {why}" for name, why in others.items()),
         )
 
@@ -69,7 +69,7 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
             yield TYPES["locked_joint_moves"].finding(
                 f"{name} moves by {max(spans):.3g} and is not one of the robot's joints",
                 Action("inspect", text=f"the list of the robot's joints, which lacks {name}"),
-                details="it is assumed to stay at 0",
+                details=f"{name} is assumed to stay at 0",
                 evidence={"range": Measured(max(spans))},
             )
 
@@ -87,7 +87,7 @@ def _units(
         yield TYPES["implausible_unit"].finding(
             f"the {signal} of {name} is probably in degrees, not radians",
             Action("inspect", text=f"the unit of the {signal} of {name}"),
-            details=f"its recorded velocity is {ratio:.3g} times that of its position",
+            details=f"its recorded velocity is {ratio:.3g} times the derivative of its position",
             evidence={"range": Measured(moved, "rad")},
         )
 

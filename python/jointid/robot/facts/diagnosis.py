@@ -214,7 +214,7 @@ def _summary(
     before, after = attempt.estimate.relative_residual, last.estimate.relative_residual
     evidence = {"before": Measured(before), "after": Measured(after)}
     facts = "this fact" if len(causes) == 1 else "these facts"
-    unexplained = f"{percent(before)} unexplained, corrected {percent(after)}"
+    unexplained = f"{percent(before)} unexplained, {percent(after)} if corrected"
     codes = sorted({each.code for each in gone})
     found = []
     calls = [each.arguments for cause in causes for each in cause.advice if each.function == _ROBOT]
@@ -230,7 +230,7 @@ def _summary(
         found.append(
             TYPES["consequences"].finding(
                 f"{len(gone)} more warnings follow from {facts} ({unexplained})",
-                details=f"{', '.join(codes)}: gone once {facts} {'is' if len(causes) == 1 else 'are'} corrected",
+                details=f"{', '.join(codes)}: gone when {facts} {'is' if len(causes) == 1 else 'are'} corrected",
                 parameters=tuple(name for each in gone for name in each.parameters),
                 evidence=evidence,
             )

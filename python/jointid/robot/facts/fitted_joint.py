@@ -240,4 +240,4 @@ class FittedJoint(FittedBalance):
 
     def _alone(self) -> tuple[Action, ...]:
         name = self.attempt.robot.names[self.joint]
-        return (Action("inspect", text=f"{name} as a single joint, for which more is modelled"),)
+        return (Action("inspect", text=f"{name} as a single joint, which has more terms"),)

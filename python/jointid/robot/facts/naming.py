@@ -45,7 +45,7 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
             function="Robot.from_urdf",
         ),
         details=f"the offsets {', '.join(turned)} are applied; with the URDF's inertias {percent(zeros.after)} of the "
-        f"torque stays unexplained with them, {percent(zeros.before)} without",
+        f"torque stays unexplained with these offsets, {percent(zeros.before)} without them",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -61,7 +61,7 @@ def stated_zeros(zeros: Zeros, robot: Robot) -> Finding:
         titled("stated zeros are off", listed(turned)),
         _call({"zero_offsets": [round(each, 6) for each in robot.zero_offsets or ()]}),
         details=f"{', '.join(turned)}; with the URDF's inertias {percent(zeros.before)} of the torque stays "
-        f"unexplained as stated, {percent(zeros.after)} with the corrected zeros",
+        f"unexplained with the stated zeros, {percent(zeros.after)} with the corrected zeros",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -78,11 +78,11 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
         "swapped_torques": (f"the torques of {both} are probably exchanged", ""),
         "wrong_sign": (
             f"{first} probably turns the other way",
-            f"its position and torque have the wrong sign, or its gear ratio{_or_other(wrong)}; ",
+            f"its position and torque, or its gear ratio, have the wrong sign{_or_other(wrong)}; ",
         ),
         "wrong_motion_sign": (
             f"the position of {first} probably has the wrong sign",
-            "its torque has the right one; ",
+            "its torque has the right sign; ",
         ),
         "wrong_torque_sign": (f"the torque of {first} probably has the wrong sign", ""),
         "wrong_coupling": (coupling, f"the facts state another coupling{_or(wrong)}; "),
@@ -103,9 +103,9 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
         advice = (_call({"couplings": _coupled(wrong.robot)}),)
     before, after = percent(wrong.before), percent(wrong.after)
     return TYPES[wrong.kind].finding(
-        titled(title, f"{before} unexplained, corrected {after}"),
+        titled(title, f"{before} unexplained, {after} if corrected"),
         *advice,
-        details=f"{details}{before} of the torque of {shown} stays unexplained, {after} when corrected",
+        details=f"{details}{before} of the torque of {shown} stays unexplained, {after} if this is corrected",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
     )
 
@@ -257,7 +257,11 @@ def _or(wrong: WrongFact) -> str:
 
 def _or_other(wrong: WrongFact) -> str:
     names = [name for each in wrong.others for name in each.joints]
-    return f" (or {' or '.join(names)} does: this motion does not separate them)" if names else ""
+    return (
+        f" (or those of {' or '.join(names)}: this motion does not separate the joints)"
+        if names
+        else ""
+    )
 
 
 def _call(arguments: Mapping[str, object]) -> Action:

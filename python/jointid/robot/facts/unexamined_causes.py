@@ -69,7 +69,7 @@ def misfit_findings(
     yield from harmless
     if concerned:
         left_over = {name: shares[name] for name in concerned}
-        yield _unexamined(estimate, left_over, "the named facts explain it" if explained else "")
+        yield _unexamined(estimate, left_over, "the named facts explain this" if explained else "")
 
 
 def _unexamined(

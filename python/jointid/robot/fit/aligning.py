@@ -113,11 +113,11 @@ def _lag_finding(lag: TorqueLag, names: Sequence[str]) -> Finding:
         if value
     }
     name, size = next(iter(sizes.items()))
-    more = f", and {len(sizes) - 1} more" if len(sizes) > 1 else ""
+    more = f", and {len(sizes) - 1} more joints" if len(sizes) > 1 else ""
     every = ", ".join(f"{each} {text}" for each, text in sizes.items())
     return TYPES["torque_filtered"].finding(
         f"the torque of {name} passed a low-pass filter of {size}{more}",
-        details=f"first-order time constants: {every}; they explain held-out motion better than a delay does, "
+        details=f"first-order time constants: {every}; these filters explain held-out motion better than a delay does, "
         "and were undone before the identification",
         evidence={
             f"{each}.time_constant": Measured(float(value), "s")
@@ -144,8 +144,8 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
         size = f"{rounded(1e3 * abs(value), 1e3 * error)} ± {two_digits(1e3 * error)} ms"
         titles.append(_how_late(attempt.robot, of_joint, value, size, bool(away.any())))
         details.append(
-            f"{f'{names[joint]}: ' * (not alike)}{abs(value) / period:.1f} sample periods against the position, with "
-            f"95 % between {low:.2f} and {high:.2f} ms"
+            f"{f'{names[joint]}: ' * (not alike)}{abs(value) / period:.1f} sample periods against the position, "
+            f"95 % interval {low:.2f} to {high:.2f} ms"
         )
         prefix = "" if alike else f"{names[joint]}."
         evidence |= {
@@ -167,16 +167,16 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
         text = "if the torque is a command that is held between samples"
         advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
     if away.any() and attempt.robot.drive is not None:
-        details.append("it is counted as one more unknown in the errors of all values")
+        details.append("this delay counts as one more unknown in the errors of all values")
     elif away.any():
-        details.append("it was shifted before the identification")
+        details.append("the torque was shifted before the identification")
     elif found.chosen:
         details.append("the position is late or coarse, the torque early, or the gear is elastic")
         text = "the position's filter and resolution, and both clocks"
         advice = (Action("inspect", text=text),)
     else:
         after = " after the stated shift" if attempt.delay.any() else ""
-        details.append(f"this delay is left{after} and biases the values")
+        details.append(f"this delay remains{after} and biases the values")
         shift = {"shift": shift_option(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
         if not alike:
@@ -191,7 +191,7 @@ def _how_late(robot: Robot, of_joint: str, value: float, size: str, removed: boo
     if robot.drive is not None and not removed:
         return f"the wanted position{of_joint} acts {size} {'later' if value > 0.0 else 'earlier'} than stated"
     if robot.drive is not None:
-        return f"the wanted position{of_joint} acts {size} {'after' if value > 0.0 else 'before'} its row"
+        return f"the wanted position{of_joint} acts {size} {'after' if value > 0.0 else 'before'} the time of its row"
     return f"the torque{of_joint} is {'late' if value > 0.0 else 'early'} by {size}"
 
 

@@ -108,7 +108,7 @@ def attempted(
             "no joint moves by more than the noise of its velocity",
             argument="recordings",
             value=runs[0].name,
-            remedy="if one does, look for late time stamps or lost rows",
+            remedy="if a joint does move, look for late time stamps or lost rows",
         )
     fit, prior = fitted(robot, balance, request.inertia, request.models)
     if robot.drive is not None and gainless:

@@ -73,10 +73,10 @@ def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
     across = np.sqrt(np.maximum(1.0 - (pull / size) ** 2, 0.0))
     error = float(max(errors[axis] * across[axis] for axis in seen)) / size
     vector = ", ".join(f"{each:.3f}" if k in seen else "?" for k, each in enumerate(pull))
-    also = f"; the motion does not show it along {' and '.join(hidden)}" if hidden else ""
+    also = f"; the motion does not show gravity along {' and '.join(hidden)}" if hidden else ""
     yield TYPES["gravity_found"].finding(
         f"gravity is ({vector}) m/s² in the base's frame, to ± {np.degrees(_NORMAL * error):.2g}°",
-        details=f"the direction is identified; the size is that of the facts{also}",
+        details=f"the direction is identified; its size is taken from the facts{also}",
         evidence={"error": Measured(error, "rad")}
         | {_AXES[k]: Measured(float(pull[k]), "m/s²") for k in seen},
     )

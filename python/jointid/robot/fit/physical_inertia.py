@@ -59,8 +59,8 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
     distance = two_digits(estimate.impossible_by)
     yield TYPES["impossible_inertia"].finding(
         f"the base parameters are not physically consistent, by {distance} standard errors",
-        details="no bodies can have them; the distance is to the nearest parameters that bodies can have; friction "
-        "and the torque of motion may still be right",
+        details="no bodies can have such parameters; the distance is to the nearest possible ones; friction and the "
+        "torque of motion may still be right",
         severity="info",
         evidence={"distance": Measured(estimate.impossible_by)},
     )

@@ -123,7 +123,7 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
     yield TYPES["recorded_velocity"].finding(
         f"the recorded velocity of {listed(names)} is used: it explains the torque better",
         Action("inspect", text="the time stamps and the positions' resolution"),
-        details="unexplained held-out torque, with the recorded instead of the derived velocity: "
+        details="unexplained share of held-out torque with the recorded instead of the derived velocity: "
         + ", ".join(shares),
         evidence={
             f"{name}.{source}": Measured(float(values[joint]))

@@ -39,7 +39,7 @@ def read_facts(path: Path) -> dict[str, Any]:
     if "zero_offsets_deg" in found:
         if "zero_offsets" in found:
             raise InputError(
-                "zero_offsets says the same in radians; one of the two is expected",
+                "zero_offsets states the same in radians; give only one of the two",
                 argument="zero_offsets_deg",
                 value=found["zero_offsets_deg"],
                 place=path.name,
@@ -65,7 +65,7 @@ def _check_tables(table: dict[str, Any], place: str, header: str = "") -> None:
             _check_tables(value, place, f"{header}.{key}".lstrip("."))
         elif header and key in KEYS and isinstance(value, list | str):
             raise InputError(
-                f"this line stands below [{header}] and belongs to it",
+                f"this line is below [{header}] and belongs to that table",
                 argument=f"{header}.{key}",
                 place=place,
                 remedy=f"write {key} above the first table",

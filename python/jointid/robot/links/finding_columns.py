@@ -40,7 +40,7 @@ def _numbered(joint: str, names: Sequence[str]) -> str | None:
 def _lacking(joints: Sequence[str], recording: RobotRecording) -> InputError:
     """Return the error for a recording that lacks joints of the robot, with a line that corrects it."""
     names = recording.names
-    both = f"the robot has the joints {', '.join(joints)}, the recording {', '.join(names)}"
+    both = f"the robot has the joints {', '.join(joints)}, the recording has {', '.join(names)}"
     renamed = "give the recording's joints the URDF's names"
     fits = [each for each in joints if each in names or _numbered(each, names) is not None]
     if not fits:

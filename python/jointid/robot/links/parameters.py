@@ -34,9 +34,9 @@ def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
             found.setdefault(term.name, _facts(term, f"{term.meaning}{others}"))
             for shape in map(_core.shape, term.shapes):
                 found.setdefault(shape.name, _facts(shape, shape.meaning))
-    more = f"half of what {VISCOUS.meaning} is more in the positive than in the negative direction"
+    more = f"half the difference of {VISCOUS.meaning}: positive direction minus negative direction"
     scale = "factor on all inertial parameters of the link that the joint moves"
-    gain = "torque of the drive per error of position, from what the links weigh"
+    gain = "torque of the drive per position error, from the weight of the links"
     return {
         **found,
         DIFFERENCE: _facts(VISCOUS, more),

@@ -60,7 +60,7 @@ class PositionDrive:
         kd = _values(drive, "kd", count)
         if any(p is None and d for p, d in zip(kp, kd, strict=True)):
             raise InputError(
-                'with kp = "free", kd must be "free" too: it is part of the viscous coefficient',
+                'with kp = "free", kd must be "free" too, because kd is part of the viscous coefficient',
                 argument="drive.kd",
                 value=drive["kd"],
             )
@@ -169,7 +169,7 @@ def _values(drive: Mapping[str, Any], key: str, count: int) -> tuple[float | Non
     wrong = not isinstance(each, Sequence | np.ndarray) or len(each) != count
     if wrong or not all(v in (FREE, None) or (is_finite(v) and v >= 0.0) for v in each):
         raise InputError(
-            f'0 or more is expected, or "free", for all joints or for each of the {count}',
+            f'a number of at least 0, or "free", is expected: one for all joints, or one for each of the {count}',
             argument=f"drive.{key}",
             value=drive[key],
         )
@@ -194,9 +194,9 @@ def facts_of_drive(names: Sequence[str]) -> str:
     """Return the line of a facts file that gives joints a position drive, with the values to fill in."""
     order = ", ".join(names)
     return (
-        "state the loop that makes torques of its wanted positions, in a facts file above its tables: "
+        "state the position loop in a facts file, above the tables: "
         f"drive = {{kp = {[20.0] * len(names)}, kd = {[1.0] * len(names)}}}, with the robot's own numbers for {order} "
-        '[N·m/rad, N·m·s/rad], or one for all; where they are not known: drive = {kp = "free", kd = "free"}'
+        '[N·m/rad, N·m·s/rad], or one number for all; if the numbers are not known: drive = {kp = "free", kd = "free"}'
     )
 
 

@@ -42,7 +42,7 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
     kept = names if joints is None else list(joints)
     for name in kept:
         if kept.count(name) > 1:
-            raise InputError("each joint is named once", argument="joints", value=name)
+            raise InputError("each joint may be named only once", argument="joints", value=name)
         if name not in names:
             shown = ", ".join(names)
             raise InputError(

@@ -264,7 +264,7 @@ def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[st
 def _drive(drive: object, n: int, couplings: object) -> PositionDrive:
     if couplings is not None:
         raise InputError(
-            "a position drive of motors that turn with several joints is not modelled",
+            "a position drive cannot be combined with couplings",
             argument="drive",
             remedy="record torques",
         )
@@ -331,7 +331,7 @@ def _named_couplings(couplings: Mapping[str, Mapping[str, float]], names: list[s
             )
         if not isinstance(row, Mapping):
             raise InputError(
-                "for each motor its joints and shares are expected",
+                "a mapping from joints to shares is expected for each motor",
                 argument=f"couplings.{motor}",
                 value=row,
             )

@@ -203,7 +203,7 @@ def signals_of(recording: RobotRecording, robot: Robot) -> tuple[Array, Array, b
         raise InputError(
             f"{robot.names[int(np.argmin(present))]} has no torque",
             place=recording.name,
-            remedy="name the joints that have one",
+            remedy="name only joints that have a torque",
         )
     if torque is not None:
         joint_torque = factor[:, None] * torque[:, columns].T
@@ -269,7 +269,7 @@ def _ratios(recording: RobotRecording, robot: Robot, columns: list[int]) -> Arra
         return np.array([recording.gear_ratio[column] for column in columns])
     names = ", ".join(robot.names)
     raise InputError(
-        f"the recording is of the motors; one gear ratio for each of {names} is needed, motor angle per joint angle",
+        f"the recording is on the motor side; a gear ratio (motor angle per joint angle) is needed for each of {names}",
         argument="gear_ratios",
         remedy=Action("call", {"gear_ratios": [...] * robot.n}, function="Robot.from_urdf"),
     )

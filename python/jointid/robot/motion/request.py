@@ -73,8 +73,8 @@ def duration_of(windows: float | None, motions: Sequence[Motion], total: float) 
         duration = total / windows if number and isinstance(windows, int) else windows
         if not number or not shortest <= duration <= total:
             raise InputError(
-                f"a duration of {shortest:.3g} to {total:.4g} seconds is expected, or how many windows, a whole number "
-                f"of at most {most}",
+                f"a duration of {shortest:.3g} to {total:.4g} seconds, or a whole number of windows, at most {most}, "
+                "is expected",
                 argument="windows",
                 value=windows,
             )

@@ -49,7 +49,7 @@ def torque_shift(shift: object, robot: Robot) -> Array:
             continue
         if moved == COMMAND:
             raise InputError(
-                "no torque was recorded; how late the wanted positions act is the delay of this robot",
+                "no torque was recorded; the delay of this robot is that of the wanted positions",
                 argument="shift",
                 value=signal,
                 remedy=f"pass shift={{'{COMMAND}': seconds}}",

@@ -121,7 +121,7 @@ def _of_joint(
             names = listed([name.replace("_", " ") for name in alike])
             what = f"{names} of {joint.name} {'is' if len(alike) == 1 else 'are'}"
             yield TYPES["at_bound"].finding(
-                f"{what} held at 0, the bound: at most {largest} of its friction"
+                f"{what} held at 0, the bound: at most {largest} of the joint's friction"
                 if small
                 else f"{what} held at 0 instead of a negative value",
                 *(() if small else (_looked_at(joint),)),
@@ -156,20 +156,20 @@ def _of_inertia(estimate: RobotEstimateRecord, columns: InertiaColumns) -> Itera
         shown = listed([names[each] for each in columns.dropped])
         yield TYPES["merged_inertia"].finding(
             f"the rotor inertia of {shown} is part of the links' inertias",
-            details="no motion separates the two; the base parameters contain it",
+            details="no motion separates the two; the base parameters contain the rotor inertia",
         )
     if columns.fixed:
         shown = listed([names[each] for each in columns.fixed])
         yield TYPES["merged_inertia"].finding(
             f"the scale of the link that {shown} moves stays at 1",
             Action("call", {"rotor_inertias": ...}, function="Robot.from_urdf"),
-            details="no motion separates it from rotor inertias and other scales",
+            details="no motion separates this scale from rotor inertias and other scales",
         )
     if estimate.consistent is False:
         yield TYPES["impossible_inertia"].finding(
             "the inertial parameters of some links are not physically consistent",
             Action("call", {"inertia": FREE}, function="identify_robot"),
-            details="no bodies can have them; friction and the torque of motion may still be right",
+            details="no bodies can have such parameters; friction and the torque of motion may still be right",
         )
     for joint in estimate.joints.values():
         scale = joint.parameters.get("inertia_scale")

@@ -210,7 +210,7 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
     if is_asymmetric(d["model"]):
         has.add(DIFFERENCE)
     if held.keys() & (FRICTION - MOTOR_TERMS.keys()) != has:
-        yield f"{place}.model", "it does not fit the parameters"
+        yield f"{place}.model", "the model does not fit the parameters"
     windows = d["windows"]
     if windows is not None:
         if len({len(column) for column in windows.values()}) > 1:
@@ -218,7 +218,7 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
         if max(windows["recording"]) >= recordings:
             yield (
                 f"{place}.windows.recording",
-                "there are not so many recordings in settings.recordings",
+                "settings.recordings contains fewer recordings",
             )
 
 

@@ -49,7 +49,7 @@ class Arm:
         """
         if estimate.consistent is False and estimate.inertia == "free":
             raise InputError(
-                "no bodies can have its inertias, so it cannot be simulated",
+                "no bodies can have these inertias, so the robot cannot be simulated",
                 argument="subject",
                 remedy="identify with inertia='scaled'",
             )
