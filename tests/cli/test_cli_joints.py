@@ -175,7 +175,7 @@ def test_one_of_several_estimates(
     assert header.read_text(encoding="utf-8") == expected.read_text(encoding="utf-8")
     assert page.is_file()
     with pytest.raises(
-        jid.InputError, match=r"several joints \(1, 2\).*choose one of them with \['1'\]"
+        jid.InputError, match=r"several joints \(1, 2\).*choose one: `source\['1'\]`"
     ):
         jid.export(found, header)  # type: ignore[arg-type]
 

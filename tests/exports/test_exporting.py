@@ -153,7 +153,7 @@ def test_a_model_that_moves_needs_an_inertia_that_can_be(tmp_path: Path) -> None
         jid.export(bare, tmp_path / "j.xml")
     jid.export(bare, tmp_path / "j.h")  # friction alone needs none
     contradicting = LOADED.replace(rotor_inertia=None).with_parameters({"inertia": 0.1})
-    with pytest.raises(jid.InputError, match="below the link's inertia"):
+    with pytest.raises(jid.InputError, match="must be at least the link's inertia"):
         jid.export(contradicting, tmp_path / "j.xml")
     thin = LOADED.replace(link=jid.Link(mass=2.5, centre_of_mass=0.5, inertia=0.1))
     with pytest.raises(jid.InputError, match="which is impossible for a body"):

@@ -164,7 +164,7 @@ def test_gear_ratios_of_the_joints_are_used_once() -> None:
             for each in ("coulomb", "viscous", "inertia"):
                 value = expected[name].parameters[each].value
                 assert estimate.parameters[each].value == pytest.approx(value, rel=1e-6)
-    with pytest.raises(jid.InputError, match="give it once"):
+    with pytest.raises(jid.InputError, match="state the gear ratio only once"):
         jid.identify_joints(at_motor.with_gear_ratio([50.0, 30.0]), joint=joints)
 
 
@@ -174,11 +174,11 @@ def test_without_ratios_the_motors_side_is_told() -> None:
     found = jid.identify_joints(robot)
     assert {each.side for each in found.results.values()} == {"motor"}
     assert (
-        "no gear ratio is known: the values of joints 1, 2 are on the motor's side"
+        "no gear ratio is known: the values of joints 1, 2 are on the motor side"
         in found.report(verbose=True)
     )
     assert found.report().startswith(
-        "robot, 2 joints: usable (at the motor, as no gear ratio is known)"
+        "robot, 2 joints: usable (on the motor side, because no gear ratio is known)"
     )
 
 
@@ -296,4 +296,4 @@ def test_a_log_of_wanted_positions_names_the_way_by_the_whole_robot() -> None:
     )
     said = [jid.identify_joints(each).report() for each in (bare, driven)]
     assert "joint 1 failed: torque: the recording has no signal torque; " in said[0]
-    assert ["a drive among its facts" in each for each in said] == [False, True]
+    assert ["a drive in the robot's facts" in each for each in said] == [False, True]

@@ -133,7 +133,7 @@ def test_standing_still_gives_no_estimate_and_no_error() -> None:
     [
         ({"window": 0.0}, "window is 0.0: a duration above 0"),
         ({"update": float("nan")}, "update is nan: a duration above 0"),
-        ({"window": 1.0}, "window is 1.0: at least four times update"),
+        ({"window": 1.0}, "window is 1.0: at least four times `update` is expected, here"),
         ({"model": "stribeck_general"}, "two shape parameters"),
         ({"joint": "joint.toml"}, "a Joint is expected"),
         ({"callback": 3}, "callback is 3: a function"),

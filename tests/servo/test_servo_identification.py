@@ -198,7 +198,7 @@ def test_what_is_missing_is_named(runs: list[jid.Recording]) -> None:
 def test_a_duty_in_percent_is_refused(runs: list[jid.Recording]) -> None:
     percent = [changed(r, extra={**r.extra, "duty": 100.0 * r.extra["duty"]}) for r in runs]
     with pytest.raises(
-        jid.InputError, match=r"duty: it reaches .*, and 1 is .* duty_scale = 0\.01"
+        jid.InputError, match=r"duty: it reaches .*, but 1 is .* duty_scale = 0\.01"
     ):
         jid.identify_servo(percent, servo_joint(), draws=0)
     joint = servo_joint()
@@ -218,7 +218,7 @@ def test_the_cause_comes_before_its_effects(runs: list[jid.Recording]) -> None:
 
 
 def test_a_servo_is_refused_where_a_torque_is_needed(runs: list[jid.Recording]) -> None:
-    with pytest.raises(jid.InputError, match="identify its recordings alone"):
+    with pytest.raises(jid.InputError, match="identify the recordings of this joint separately"):
         jid.sweep(runs, servo_joint(), grid={"windows": [100]}, trials=1)
 
 
@@ -250,7 +250,7 @@ def test_the_verdict_minds_wide_intervals_and_missing_errors(
     assert [each.parameters for each in found] == [("inertia",)]
     bare = jid.identify_servo(runs, servo_joint(), draws=0)
     assert bare.verdict.level == "usable with care"
-    assert "errors were not asked for" in bare.verdict.reasons[0]
+    assert "errors were not requested" in bare.verdict.reasons[0]
 
 
 def test_without_a_link_no_swing_is_claimed(runs: list[jid.Recording]) -> None:

@@ -119,8 +119,8 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "compare: the torque of a servo without one": (
         lambda b: verbs.compare(b.runs, b.servo, score="windows"),
-        "model 'coulomb_viscous': the recording has no signal torque, motor_torque or current; identify its "
-        "recordings alone",
+        "model 'coulomb_viscous': the recording has no signal torque, motor_torque or current; identify the "
+        "recordings of this joint separately",
     ),
     "load: an option of one joint": (
         lambda b: verbs.load(b.folder / "arm.csv", joints="all", drop_copies=True),
@@ -153,11 +153,11 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "simulate: a robot's estimate": (
         lambda b: verbs.simulate(b.robot_estimate),
-        "subject is a RobotEstimate: simulate takes one joint or servo; give recordings=: its logged torques",
+        "subject is a RobotEstimate: simulate takes one joint or servo; give recordings: their logged torques",
     ),
     "simulate: several joints": (
         lambda b: verbs.simulate(b.joint_estimates),
-        "subject is a JointEstimates: simulate takes one joint or servo; choose one of them, as in found[NAME]",
+        "subject is a JointEstimates: simulate takes one joint or servo; choose one: `found[NAME]`",
     ),
     "simulate: no motion": (
         lambda b: verbs.simulate(b.joint, b.law),
@@ -165,7 +165,7 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "simulate: a joint along logs": (
         lambda b: verbs.simulate(b.joint, recordings=b.run),
-        "recordings: simulate along recordings is of a servo, a joint with a voltage; give a controller and",
+        "recordings: simulate along recordings needs a servo: a joint with a voltage as its input; give a",
     ),
     "simulate: a controller along logs": (
         lambda b: verbs.simulate(b.servo_estimate, b.law, recordings=b.runs),

@@ -99,7 +99,7 @@ def export(
         raise InputError(
             f"these are the estimates of several joints ({', '.join(names)}); one is expected",
             argument="source",
-            remedy=f"choose one of them with [{names[0]!r}]" if names else (),
+            remedy=f"choose one: `source[{names[0]!r}]`" if names else (),
         )
     if isinstance(source, RobotEstimate):
         return _export_robot(source, path, target, into, joint_name, approximate, inertia)

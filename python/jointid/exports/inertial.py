@@ -93,7 +93,7 @@ def _left(joint: Joint, total: float) -> float:
     drive = total - joint.link_inertia
     if drive < 0.0:
         raise InputError(
-            f"it is below the link's inertia of {joint.link_inertia:.6g}, which it contains",
+            f"it must be at least the link's inertia, {joint.link_inertia:.6g}, because it includes the link",
             argument="parameters.inertia",
             value=total,
             place=joint.owner,
@@ -118,6 +118,6 @@ def _equivalent(law: Law, joint: Joint, total: float, weight: float) -> Body:
         inertia=_NOTHING * total,
         gravity=field,
         drive=drive,
-        note="mass and distance of the body are chosen: the recording determines only their product, by gravity, "
+        note="mass and distance of the body are chosen. The recording determines only mass × distance (from gravity), "
         "and the inertia of drive and body together",
     )

@@ -62,7 +62,7 @@ def headline(result: JointEstimatesRecord) -> str:
     """Return the level of the worst joint, as one line."""
     joints = result.results.values()
     at_motor = any(each.side == "motor" for each in joints)
-    side = " (at the motor, as no gear ratio is known)" if at_motor else ""
+    side = " (on the motor side, because no gear ratio is known)" if at_motor else ""
     return f"{result.name or 'robot'}, {len(joints)} joints: {_worst(result)}{side}"
 
 
@@ -108,12 +108,12 @@ def _failures(result: JointEstimatesRecord, error: Callable[[InputError], str]) 
     if not failed or failed[0].error is None:
         return []
     others = ", ".join(each.name for each in failed[1:])
-    also = f" (failed, too: {others})" if others else ""
+    also = f" (these failed, too: {others})" if others else ""
     return [f"{joint_phrase(failed[0].name)} failed: {error(failed[0].error)}{also}"]
 
 
 def _coupled(result: JointEstimatesRecord) -> list[str]:
     """Return the first coupling between joints, and the number of the others."""
     sentences = result.sentences()
-    more = f", and {len(sentences) - 1} more" if len(sentences) > 1 else ""
+    more = f", and {len(sentences) - 1} more couplings" if len(sentences) > 1 else ""
     return [cut(f"{sentences[0]}{more}")] if sentences else []

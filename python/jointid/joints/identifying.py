@@ -109,7 +109,7 @@ def _of_each(error: InputError, joints: int) -> InputError:
         Action(
             "call",
             each.arguments,
-            "; ".join(filter(None, (each.text, "one for each joint, comma-separated"))),
+            "; ".join(filter(None, (each.text, "one value for each joint, comma-separated"))),
             each.function,
         )
         if isinstance(each, Action) and joints > 1 and set() < each.arguments.keys() <= _OF_EACH
@@ -132,7 +132,7 @@ def _with_drive(error: InputError, recording: Recording) -> InputError:
     whole = Action(
         "call",
         {"robot": ...},
-        "with a drive among its facts, because wanted positions are recorded",
+        "with a drive in the robot's facts, because wanted positions are recorded",
         "identify_robot",
     )
     return InputError(
@@ -203,10 +203,10 @@ def _with_ratios(robot: RobotRecording, known: Mapping[str, Joint | None]) -> Ro
     for name, ratio, own in zip(robot.names, ratios, robot.gear_ratio, strict=True):
         if ratio not in (1.0, own):
             raise InputError(
-                f"the recording has {own:g} for {joint_phrase(name)}",
+                f"the recording has the gear ratio {own:g} for {joint_phrase(name)}",
                 argument="gear_ratio",
                 value=ratio,
-                remedy="give it once",
+                remedy="state the gear ratio only once",
             )
     return robot
 

@@ -20,7 +20,7 @@ def overview_of(result: JointEstimatesRecord) -> Overview:
     joints = result.results
     return Overview(
         title=f"{result.name or 'robot'}: friction of {len(joints)} joint{'s' * (len(joints) != 1)}",
-        footer="Each joint alone; value ± standard error.",
+        footer="Each joint is identified alone; value ± standard error.",
         answer=(
             f"{headline(result)}.",
             *(f"{joint_phrase(name)} failed: {joints[name].error}" for name in result.failed),

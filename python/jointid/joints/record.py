@@ -63,7 +63,7 @@ def _sentence(name: str, share: Share) -> str:
     alike = ""
     if share.alike:
         others = " and ".join(joint_phrase(each) for each in share.alike)
-        alike = f"; {others} would explain it as well: they move alike"
+        alike = f"; {others} would explain as much, because these joints move alike"
     if share.own_too:
         alike += f"; {joint_phrase(name)}'s own motion explains nearly as much"
     verb = "explains" if share.certain else "perhaps explains"

@@ -80,7 +80,7 @@ def notes(result: JointEstimatesRecord) -> list[str]:
     if at_motor:
         lines.append(
             f"no gear ratio is known: the values of joint{'s' * (len(at_motor) > 1)} {', '.join(at_motor)} are on the "
-            "motor's side"
+            "motor side"
         )
     return lines
 

@@ -88,7 +88,7 @@ class OnlineEstimate(Result):
             facts=(
                 ("time", f"{self.begin:.2f} to {self.end:.2f} s"),
                 ("windows", str(self.windows)),
-                ("update", f"{self.update}, in {1e3 * self.seconds:.2g} ms"),
+                ("update", f"number {self.update}, computed in {1e3 * self.seconds:.2g} ms"),
                 ("samples left out", str(self.dropped)),
             ),
         )

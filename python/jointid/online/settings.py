@@ -51,7 +51,7 @@ class OnlineSettings:
             checked_duration(name, getattr(self, name))
         if self.window < 4.0 * self.update:
             raise InputError(
-                f"at least four times update, {self.update:g} s, is expected",
+                f"at least four times `update` is expected, here {4.0 * self.update:g} s",
                 argument="window",
                 value=self.window,
             )
@@ -106,7 +106,7 @@ class OnlineSettings:
                 "it is missing",
                 argument="torque",
                 place="samples",
-                remedy="give the torque at the output, or motor_torque or current and a joint that converts it",
+                remedy="give the torque at the output; or motor_torque or current, and a joint that converts it",
             )
         recording = _example(signals, joint.kind if joint is not None else "revolute")
         output_torque(recording, joint)
@@ -115,8 +115,8 @@ class OnlineSettings:
         parameter_bounds(names, joint, self.posed.parameters)
         if self.windows is not None and self.window <= 2 * len(names) * self.windows:
             raise InputError(
-                f"{len(names)} parameters need more than {2 * len(names)} windows of integration within window, "
-                f"{self.window:g} s",
+                f"{len(names)} parameters need more than {2 * len(names)} windows of integration within "
+                f"`window`, here {self.window:g} s",
                 argument="windows",
                 value=self.windows,
                 remedy="give a shorter duration, or a longer window",
@@ -142,7 +142,7 @@ class OnlineSettings:
             )
         if chosen.load_friction:
             raise InputError(
-                "it acts on the sum of all other terms, which takes too long to search while samples arrive",
+                "it acts on the sum of all other terms; its search takes too long while samples arrive",
                 argument="load_friction",
                 value=chosen.load_friction,
                 remedy="leave it out",
@@ -152,7 +152,9 @@ class OnlineSettings:
                 "samples that arrive on line have no extra signals",
                 argument="terms",
                 value=str(chosen.terms),
-                remedy=Action("call", {"terms": {}}, text="on a recording, identify has them"),
+                remedy=Action(
+                    "call", {"terms": {}}, text="identify on a recording uses extra signals"
+                ),
             )
         if model.per_recording:
             raise InputError(

@@ -61,7 +61,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     """Yield the places of fields that are valid alone but contradict each other."""
     runs = len(d["runs"])
     if len(d["groups"]) != runs:
-        yield "groups", "one for each of the runs is expected"
+        yield "groups", "one group for each of the runs is expected"
     for name in ("errors", "bistable"):
         if len(d[name]) != len(d["models"]) or any(len(row) != runs for row in d[name]):
-            yield name, f"a list of {runs}, one for each run, is expected for each model"
+            yield name, f"a list of {runs} values, one for each run, is expected for each model"

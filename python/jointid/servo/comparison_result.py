@@ -65,7 +65,7 @@ class ServoComparison(KeptResult):
             title=f"{self.estimate.joint.name or 'servo'}: {len(self.models)} models compared",
             answer=(
                 f"Use {self.best}: {self.estimate.verdict.level}.",
-                "Its closed loop is nearest to the runs that were held out.",
+                "Its simulated closed loop is nearest to the held-out runs.",
             ),
             level=self.estimate.verdict.level,
             parameters=tuple(

@@ -56,7 +56,7 @@ def _inseparable(estimate: ServoEstimate, unknowns: Unknowns) -> Iterator[Findin
 def _chosen(estimate: ServoEstimate) -> str:
     if estimate.joint.link is None:
         return "because no load swings freely"
-    return "because its free swing differs least from those of the other shares, in the worst case"
+    return "because the free swing with this share differs least from the swings with other shares"
 
 
 def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
@@ -82,7 +82,7 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
             continue
         top = p.interval[1] if p.interval is not None else np.nan
         upto = (
-            f"a bootstrap over the runs gives up to {two_digits(top)} {p.unit}".rstrip()
+            f"a bootstrap over the runs gives values up to {two_digits(top)} {p.unit}".rstrip()
             if top > 0.0
             else ""
         )

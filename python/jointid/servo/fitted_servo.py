@@ -180,7 +180,9 @@ class FittedServo(FittedBalance):
 
     def identified_with(self, **_: Any) -> tuple[Action, ...]:
         """Return advice to inspect the servo: its model has no such term."""
-        return (Action("inspect", text="how the servo turns: its model has no such term"),)
+        return (
+            Action("inspect", text="how the servo turns: its model has no term for this effect"),
+        )
 
     def with_offset(self) -> tuple[Action, ...]:
         """Return advice to inspect the zero: gravity is the only known torque, so a wrong zero looks like an offset."""

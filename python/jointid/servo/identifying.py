@@ -233,13 +233,15 @@ def _terms(model: Model) -> tuple[Layout, bool]:
     gravity = stated.pop("gravity", "known")
     if name not in LAYOUTS:
         raise InputError(
-            f"a servo without a torque signal is identified with {' or '.join(LAYOUTS)}, and friction of the load",
+            f"a servo without a torque signal is identified with {' or '.join(LAYOUTS)}, with or without load_friction",
             argument="model",
             value=name,
         )
     if gravity == "free":
         raise InputError(
-            "the load's gravity is the servo's only known torque", argument="gravity", value=gravity
+            "the load's gravity is the servo's only known torque, so it cannot be free",
+            argument="gravity",
+            value=gravity,
         )
     for key, value in stated.items():
         if value:

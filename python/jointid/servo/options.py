@@ -27,7 +27,7 @@ class ServoFitOptions(TypedDict, total=False):
         float | None,
         Option(
             kind="float, optional",
-            help="Time by which a row's position is older than its duty [s], because a bus reads them one after the "
+            help="Time by which a row's position is older than its duty [s], because the bus reads them one after the "
             "other. Default: estimated if the position loop is known and the duty is logged, otherwise 0.",
         ),
     ]
@@ -40,8 +40,8 @@ class ServoOptions(ServoFitOptions, total=False):
         Model | ModelName | Mapping[str, Any] | None,
         Option(
             kind="Model, str or mapping, optional",
-            help='One without shape parameters such as "coulomb_viscous", with or without `load_friction`. Default: '
-            "the joint's, otherwise with friction of the load.",
+            help='Friction model without shape parameters, such as "coulomb_viscous", with or without `load_friction`. '
+            "Default: the joint's model, otherwise one with load friction.",
         ),
     ]
     draws: Annotated[
@@ -52,4 +52,4 @@ class ServoOptions(ServoFitOptions, total=False):
             default=200,
         ),
     ]
-    seed: Annotated[int, Option(kind="int", help="Of the resampling. Default 0.", default=0)]
+    seed: Annotated[int, Option(kind="int", help="Seed of the resampling. Default 0.", default=0)]

@@ -119,7 +119,7 @@ def _of_full_voltage(duty: Array, place: str) -> Array:
     top = float(np.abs(duty).max())
     if top > _LARGEST:
         raise InputError(
-            f"it reaches {top:.4g}, and 1 is the full voltage",
+            f"it reaches {top:.4g}, but 1 is the full voltage",
             argument="duty",
             place=place,
             remedy="state its scale in the joint file's [drive]: duty_scale = 0.01 for percent",

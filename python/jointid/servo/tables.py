@@ -195,5 +195,5 @@ def _command(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
         text = "no sign that it is held between rows: interpolated linearly"
         return [("command", text)]
     late = f"{1e3 * estimate.command_lag:.1f} ms"
-    text = f"held between rows: it acts {late} later than its row on average (found)"
+    text = f"held between rows; it acts {late} after its row on average (identified)"
     return [("command", text)]

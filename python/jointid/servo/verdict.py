@@ -45,7 +45,7 @@ def _objections(estimate: ServoEstimateRecord) -> Iterable[Objection]:
     if free and all(p.stderr is None for p in free):
         yield Objection(
             code="errors",
-            reason="errors were not asked for, so the accuracy of the values is not known",
+            reason="errors were not requested, so the accuracy of the values is not known",
             blocking=False,
             parameters=tuple(p.name for p in free),
         )

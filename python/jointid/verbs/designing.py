@@ -123,5 +123,5 @@ _REMEDIES: dict[OtherKind, str] = {
     "robot": _OF_ONE,
     "robot estimate": _OF_ONE,
     "servo estimate": "give its .identified joint, which takes a torque",
-    "joint estimates": "choose one of them, as in found[NAME]",
+    "joint estimates": "choose one: `found[NAME]`",
 }

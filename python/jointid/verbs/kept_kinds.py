@@ -26,7 +26,7 @@ _HOMES = {
 }
 _MARK = "jointid "  # before a kind in a document
 _STUDY = "jointid-study"
-_REMEDY = "save one with its method save"
+_REMEDY = "save a result with its method save"
 
 
 def class_of_kind(source: Path | str) -> type[KeptResult]:

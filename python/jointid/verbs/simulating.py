@@ -205,7 +205,7 @@ def _along(
     """Return a servo's closed loop along its logs."""
     if isinstance(subject, Estimate) or (isinstance(subject, Joint) and subject.voltage is None):
         raise InputError(
-            "simulate along recordings is of a servo, a joint with a voltage",
+            "simulate along recordings needs a servo: a joint with a voltage as its input",
             argument="recordings",
             remedy="give a controller and a trajectory instead",
         )
@@ -223,6 +223,6 @@ def _are_recordings(value: object) -> bool:
 
 _REMEDIES: dict[OtherKind, str] = {
     "robot": "give a jid.Joint with the values of one of its joints",
-    "robot estimate": "give recordings=: its logged torques then move the arm",
-    "joint estimates": "choose one of them, as in found[NAME]",
+    "robot estimate": "give recordings: their logged torques then move the arm",
+    "joint estimates": "choose one: `found[NAME]`",
 }
