@@ -108,7 +108,7 @@ def test_a_large_file_is_not_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
     path.write_text("[1, 2, 3, 4]", encoding="utf-8")
     assert read_text(path) == "[1, 2, 3, 4]"
     monkeypatch.setattr("jointid.base.schema.LARGEST", 10)
-    with pytest.raises(InputError, match=r"large\.json: too large: 10 bytes are allowed"):
+    with pytest.raises(InputError, match=r"large\.json: too large: at most 10 bytes are allowed"):
         read_text(path)
     with pytest.raises(InputError, match=r"none\.json: there is no such file"):
         read_text(tmp_path / "none.json")
@@ -116,7 +116,7 @@ def test_a_large_file_is_not_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
 
 def test_a_large_text_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("jointid.base.schema.LARGEST", 10)
-    with pytest.raises(InputError, match="too large: 12 characters, 10 are allowed"):
+    with pytest.raises(InputError, match="too large: 12 characters, at most 10 are allowed"):
         read_json("[1, 2, 3, 4]")
     assert read_json('{"a": [1]}') == {"a": [1]}
 
@@ -124,7 +124,7 @@ def test_a_large_text_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.skipif(not Path("/dev/zero").exists(), reason="no such device")
 def test_a_device_without_a_size_is_not_read_without_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("jointid.base.schema.LARGEST", 10)
-    with pytest.raises(InputError, match="too large: 10 bytes are allowed"):
+    with pytest.raises(InputError, match="too large: at most 10 bytes are allowed"):
         read_text(Path("/dev/zero"))
 
 

@@ -130,7 +130,7 @@ def test_other_tables_are_refused_as_before(
 def test_too_few_rows_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     v = np.array([1.0, 2.0, 0.0])
     assert main(["identify", str(table(tmp_path / "a.csv", v, v))]) == 2
-    assert "2 rows at 2 speeds other than 0" in capsys.readouterr().err
+    assert "2 rows with 2 different speeds other than 0" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -130,7 +130,9 @@ def test_either_order_of_bytes_and_objects_left_out(order: str, tmp_path: Path) 
     assert "only 'tabl'; save" in refusal(written(tmp_path / "a.mat", level_5(order, opaque)))
     wrong = variable(order, "q", 6, 9, struct.pack(f"{order}3d", 1, 2, 3), 10)
     error_text = refusal(written(tmp_path / "a.mat", level_5(order, times, wrong)))
-    assert "damaged or truncated (the variable 'q' has 3 values for [1, 10])" in error_text
+    assert (
+        "damaged or truncated (the variable 'q' has 3 values for the shape [1, 10])" in error_text
+    )
 
 
 def test_a_file_nested_without_end_is_left_alone(tmp_path: Path) -> None:

@@ -165,5 +165,5 @@ def test_a_joint_that_stands_twice_is_refused() -> None:
 def test_more_values_than_joints_are_refused() -> None:
     state = State(stamp=START, name=["a"], position=[1.0, 2.0])
     raw = encoded(STORES["cdr"], joint_state("/js", state), "cdr")
-    with pytest.raises(DamageError, match="it has 1 joints, but 2 of position"):
+    with pytest.raises(DamageError, match="it has 1 joints, but 2 values of position"):
         BinaryDecoder(topic_of("cdr")).decode([raw], 0)
