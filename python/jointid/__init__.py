@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from jointid.base.result import Result
     from jointid.cli.demonstration import Demonstration as Demonstration
     from jointid.cli.demonstration import demo
-    from jointid.commissioning import ring as commissioning
+    from jointid.commissioning import cycles as commissioning
     from jointid.comparison.comparison import compare_models as compare_models
     from jointid.comparison.result import Comparison as Comparison
     from jointid.estimate.bootstrap import Bootstrap as Bootstrap
@@ -223,7 +223,7 @@ def _next_motion() -> Callable[..., object]:
 
 def _class_of_kind() -> Callable[..., object]:
     """Load what finds the kind of result that a file holds."""
-    from jointid.verbs.kept_kinds import class_of_kind
+    from jointid.verbs.result_kinds import class_of_kind
 
     return class_of_kind
 

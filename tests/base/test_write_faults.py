@@ -74,7 +74,7 @@ _SHOWN = {
     "cli.outputs": "command report",
     "cli.session": "command run",
     "cli.study": "command sweep drawn",
-    "commissioning.ring": "command run",
+    "commissioning.cycles": "command run",
     "estimate.estimate": "estimate",
     "excitation.design": "design",
     "exports.exporting": "model",

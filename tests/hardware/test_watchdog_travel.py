@@ -13,7 +13,7 @@ from killed_host import travel_after_death, waiting
 import jointid as jid
 from jointid.base.errors import InputError
 from jointid.hardware import Bench, Session, SessionLimits, SessionOptions, Watchdog, open_drive
-from jointid.hardware.session.travel_after_death import DeadHost, Moments
+from jointid.hardware.session.host_failure_travel import DeadHost, Moments
 from jointid.hardware.session.watchdog import watchdog_of
 from jointid.hardware.session.watchdog_check import (
     WatchdogTravel,

@@ -18,7 +18,7 @@ from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.families import BY_NAME, listed_candidates
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.causes.folds import Folds, first_windows, summed
-from jointid.identification.causes.suspicion import suspicious
+from jointid.identification.causes.residual_test import suspicious
 from jointid.identification.causes.whole_recording import WholeRecording
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.prepared import prepare

@@ -10,7 +10,7 @@ import jointid as jid
 from jointid.estimate.delays import Delay
 from jointid.identification.causes.causes import _prompt
 from jointid.identification.causes.families import BY_NAME
-from jointid.identification.causes.suspicion import correlated, suspicious
+from jointid.identification.causes.residual_test import correlated, suspicious
 from jointid.identification.warnings.inspection import inspect
 from jointid.identification.warnings.spikes import _without_kicks
 

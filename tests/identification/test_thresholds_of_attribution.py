@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from jointid.identification.causes import attribution, changes, events, fitted, suspicion
+from jointid.identification.causes import attribution, changes, events, fitted, residual_test
 from jointid.identification.causes.attribution import Score, score_of
 from jointid.identification.causes.candidates import Candidate
 from jointid.identification.causes.events import LocalEvent, local_event
@@ -273,15 +273,15 @@ def test_folds_need_five_blocks_of_four_rows(rows: int, enough: bool) -> None:
 def test_neighbours_that_are_alike_are_suspicious(
     count: int, factor: int, correlation: float, alike: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(suspicion, "correlations", lambda *_: {factor: correlation})
-    assert suspicion.correlated(np.ones(count), np.zeros(count, dtype=np.int64)) == alike
+    monkeypatch.setattr(residual_test, "correlations", lambda *_: {factor: correlation})
+    assert residual_test.correlated(np.ones(count), np.zeros(count, dtype=np.int64)) == alike
 
 
 @pytest.mark.parametrize(("count", "scales"), [(39, []), (40, [1]), (156, [1]), (157, [1, 4])])
 def test_forty_sums_tell_noise_from_structure(count: int, scales: list[int]) -> None:
     run = np.zeros(count, dtype=np.int64)
-    assert list(suspicion.correlations(np.ones(count), run)) == scales
-    assert suspicion.testable(run) == bool(scales)
+    assert list(residual_test.correlations(np.ones(count), run)) == scales
+    assert residual_test.testable(run) == bool(scales)
 
 
 @pytest.mark.parametrize(
@@ -290,19 +290,19 @@ def test_forty_sums_tell_noise_from_structure(count: int, scales: list[int]) -> 
 def test_slow_motion_three_times_as_loud_is_suspicious(
     count: int, times: float, said: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(suspicion, "correlated", lambda *_: False)
+    monkeypatch.setattr(residual_test, "correlated", lambda *_: False)
     slow = np.arange(count) < 0.2 * count
     velocity, duration = np.where(slow, 0.1, -1.0), np.where(slow, 2.0, 1.0)
     residual = np.where(slow, math.sqrt(2.0 * times), 1.0)  # noise grows with the root of the time
     run = np.zeros(count, dtype=np.int64)
-    assert suspicion.suspicious(residual, run, duration, velocity) == said
+    assert residual_test.suspicious(residual, run, duration, velocity) == said
 
 
 def test_the_end_of_a_recording_is_no_neighbour_of_the_next() -> None:
     residual = np.zeros(80)
     residual[39:41] = 1.0
-    assert suspicion.correlations(residual, np.zeros(80, dtype=np.int64)) == {1: 0.5}
-    assert suspicion.correlations(residual, np.arange(80) // 40) == {1: 0.0}
+    assert residual_test.correlations(residual, np.zeros(80, dtype=np.int64)) == {1: 0.5}
+    assert residual_test.correlations(residual, np.arange(80) // 40) == {1: 0.0}
 
 
 @pytest.mark.parametrize(("samples", "limit"), [(5, False), (6, True)])

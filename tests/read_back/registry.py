@@ -251,7 +251,7 @@ def _any_kind() -> Example:
         name="any.json",
         documents=[_document("servo.json")],
         use=jid.Result.load,
-        modules=["verbs.kept_kinds", "servo.reading_back"],
+        modules=["verbs.result_kinds", "servo.reading_back"],
         elsewhere=("joint",),
     )
 

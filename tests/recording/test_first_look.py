@@ -9,7 +9,7 @@ from example_recordings import WELL_EXCITED
 
 import jointid as jid
 from jointid.recording.plausibility import range_remark
-from jointid.recording.readers.looking import first_look
+from jointid.recording.readers.table_preview import first_look
 
 
 def written(path: Path, header: str, rows: int = 20) -> Path:

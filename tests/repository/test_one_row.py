@@ -70,7 +70,7 @@ ALLOWED: list[tuple[str, str, str]] = [
     ("coulomb*", "python/jointid/problem/constant_torque.py", "collinear with an offset"),
     (
         "coulomb",
-        "python/jointid/identification/inference/undivided.py",
+        "python/jointid/identification/inference/offset_or_asymmetry.py",
         "an offset takes up its asymmetry",
     ),
     ("*", "python/jointid/joint/own_terms.py", "kinds of own terms, called like the terms"),

@@ -28,7 +28,7 @@ from jointid.commissioning.result import BenchRun
 from jointid.estimate.causes import Causes
 from jointid.estimate.findings import Finding
 from jointid.estimate.verdict import Verdict
-from jointid.verbs.kept_kinds import _HOMES, class_of_kind
+from jointid.verbs.result_kinds import _HOMES, class_of_kind
 
 _GUIDE = Path(__file__).resolve().parents[2] / "docs" / "guide.md"
 METHODS = (
@@ -347,9 +347,11 @@ def test_files_from_before_are_read_and_written_alike(name: str, tmp_path: Path)
 
 
 def _unworded(value: Any) -> Any:
-    """A document without the messages of findings: they are worded again, by what advice is called now."""
+    """Return a document without messages of findings and reasons of verdicts: today's words replace them."""
     if isinstance(value, dict):
-        return {key: _unworded(each) for key, each in value.items() if key != "message"}
+        return {
+            key: _unworded(each) for key, each in value.items() if key not in ("message", "reasons")
+        }
     return [_unworded(each) for each in value] if isinstance(value, list) else value
 
 

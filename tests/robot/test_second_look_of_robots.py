@@ -13,7 +13,7 @@ import small_arm
 import jointid as jid
 from jointid.robot.facts.named_causes import CAUSES
 from jointid.robot.motion import motion
-from jointid.robot.motion.loud_samples import quiet_velocity
+from jointid.robot.motion.noisy_samples import quiet_velocity
 
 pytest.importorskip("pinocchio")
 

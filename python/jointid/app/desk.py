@@ -23,7 +23,7 @@ from jointid.joint.joint import Joint
 if TYPE_CHECKING:
     from jointid.comparison.result import Comparison
     from jointid.estimate.estimate import Estimate
-    from jointid.recording.readers.looking import FirstLook, LookedColumn
+    from jointid.recording.readers.table_preview import FirstLook, LookedColumn
     from jointid.recording.recording import Recording
 
 COUNTS = "counts"

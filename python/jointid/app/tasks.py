@@ -14,7 +14,7 @@ from jointid.base.values import dataclass
 if TYPE_CHECKING:
     from jointid.comparison.result import Comparison
     from jointid.estimate.estimate import Estimate
-    from jointid.recording.readers.looking import FirstLook
+    from jointid.recording.readers.table_preview import FirstLook
     from jointid.recording.recording import Recording
 
 Report = Callable[[float, str], object]
@@ -30,7 +30,7 @@ class Read:
 
 def look(_report: Report, path: Path) -> FirstLook:
     """Return the content of a file."""
-    from jointid.recording.readers.looking import first_look
+    from jointid.recording.readers.table_preview import first_look
 
     return first_look(path)
 

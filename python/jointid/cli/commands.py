@@ -238,7 +238,7 @@ def _saved(path: Path, joint: str | None) -> Result:
     """Return the result in a file, of any kind. `joint` names one of several joints."""
     from jointid.base.result import Result
     from jointid.joints.reading import load_estimate
-    from jointid.verbs.kept_kinds import class_of_kind
+    from jointid.verbs.result_kinds import class_of_kind
 
     try:
         kind = class_of_kind(path)

@@ -75,7 +75,7 @@ def _unrecognised(arguments: argparse.Namespace) -> str:
     """Return the first twelve columns that were not read and have an unknown header."""
     from jointid.recording.headers import understood
     from jointid.recording.readers.loading import table_of
-    from jointid.recording.readers.what_is_read import columns_read
+    from jointid.recording.readers.read_columns import columns_read
 
     reading = how_to_read(arguments)
     table = table_of(

@@ -78,7 +78,7 @@ def load_all(
         try:
             recordings.append(read(path, {}))
         except InputError as error:
-            from jointid.cli.looking_ahead import looked_ahead
+            from jointid.cli.complete_advice import looked_ahead
             from jointid.cli.torque_column import torque_or_servo
 
             further = looked_ahead(

@@ -90,7 +90,7 @@ def _scales(
         return {}, []
     from jointid.cli.wording import Wording
     from jointid.robot.links.robot import Robot
-    from jointid.robot.weighing import weight_scales
+    from jointid.robot.weight_ratio import weight_scales
 
     robot = Robot.from_urdf(arguments.robot, facts=arguments.facts)
     try:
@@ -130,7 +130,7 @@ def _of_joint(robot: RobotRecording, name: str, scale: float | None) -> dict[str
 
 def _signs(recording: Recording, drive: str) -> str:
     """Return the signs of a torque; noise about 0 does not count."""
-    from jointid.problem.magnitude import is_one_sided
+    from jointid.problem.unsigned_torque import is_one_sided
 
     values = getattr(recording, drive)
     lowest, highest = float(values.min()), float(values.max())

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 from jointid.base.errors import InputError
 from jointid.cli.arguments import whole, whole_seed
-from jointid.cli.endings import (
+from jointid.cli.outputs import check_folder, check_output_folder
+from jointid.cli.proof import missing_certificate
+from jointid.cli.run_messages import (
     document,
     motor_and_recording,
     motor_off,
@@ -18,8 +20,6 @@ from jointid.cli.endings import (
     refused,
     stopped,
 )
-from jointid.cli.outputs import check_folder, check_output_folder
-from jointid.cli.proof import missing_certificate
 from jointid.cli.wording import ADVICE, Wording
 
 if TYPE_CHECKING:

@@ -21,7 +21,7 @@ from jointid.problem.recordings import listed
 from jointid.problem.settings import Settings
 from jointid.problem.terms import TermChoice
 from jointid.problem.window_table import Prediction, r_squared, relative_residual
-from jointid.recording.mending import mended
+from jointid.recording.corrections import mended
 from jointid.recording.recording import Recording
 from jointid.recording.shifting import shifted
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from jointid.base.errors import InputError
 from jointid.base.values import dataclass
-from jointid.estimate.objections import (
+from jointid.estimate.reasons_against_use import (
     Objection,
     acts_against_motion,
     hidden_inertia,

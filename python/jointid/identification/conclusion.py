@@ -16,16 +16,17 @@ from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.delays import Delay
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import Convergence, ResidualStatistics
-from jointid.identification.causes.suspicion import correlated, suspicious, testable
-from jointid.identification.inference.held import held_intervals
+from jointid.identification.causes.residual_test import correlated, suspicious, testable
+from jointid.identification.inference.added_noise import Shifts
+from jointid.identification.inference.bound_intervals import held_intervals
 from jointid.identification.inference.inference import (
     freedom_of,
     joint_of,
     parameters_of,
     statistics_of,
 )
-from jointid.identification.inference.measuring_again import Shifts
 from jointid.identification.inference.motion import Motion, motion_segments
+from jointid.identification.inference.offset_or_asymmetry import divided, with_undivided
 from jointid.identification.inference.own_noise import own_systematic
 from jointid.identification.inference.purposes import Torques, within
 from jointid.identification.inference.systematic import (
@@ -33,7 +34,6 @@ from jointid.identification.inference.systematic import (
     lacking_torques,
     systematic_errors,
 )
-from jointid.identification.inference.undivided import divided, with_undivided
 from jointid.identification.inference.velocity_noise import velocity_systematic
 from jointid.identification.plain_least_squares import second_look
 from jointid.identification.refinements.refinements import Refinements
@@ -143,7 +143,7 @@ def infer(
     del lacking
     lags = {each.signal: _unknown(each) for each in refinements.delays.values()}
     if any(lags.values()):
-        from jointid.identification.inference.lag import of_lags
+        from jointid.identification.inference.delay_errors import of_lags
 
         parts["lag"] = np.zeros(len(best))
         parts["lag"][kept] = of_lags(problem, penalty, best, free_jacobian, lags)
@@ -191,7 +191,7 @@ def infer(
             delays=refinements.delays,
         )
         if effect is not None:
-            from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
+            from jointid.identification.inference.velocity_residual import beyond_velocity_noise
 
             real = beyond_velocity_noise(problem, penalty, best, free, causes.found)
             causes = replace(causes, found=real)

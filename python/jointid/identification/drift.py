@@ -16,7 +16,7 @@ from jointid import _core
 from jointid.estimate.causes import Cause
 from jointid.estimate.estimate import Estimate
 from jointid.estimate.statistics import ParameterEstimate
-from jointid.identification.refinements.balance_misfit import fits_better
+from jointid.identification.refinements.balance_residual import fits_better
 from jointid.problem.problem import Problem
 from jointid.recording.recording import Recording
 

@@ -25,11 +25,11 @@ from jointid.identification.conclusion import infer, is_misfit
 from jointid.identification.drift import may_drift, without_drift
 from jointid.identification.follow_up import EstimateSource
 from jointid.identification.gain import penalty_as_fitted, with_instruments
-from jointid.identification.inference.given import of_given_facts
+from jointid.identification.inference.fact_tolerances import of_given_facts
+from jointid.identification.inference.offset_or_asymmetry import of_symmetry
 from jointid.identification.inference.own_noise import measured_once_more
 from jointid.identification.inference.residual_side import of_residual_side
 from jointid.identification.inference.systematic import other_windows
-from jointid.identification.inference.undivided import of_symmetry
 from jointid.identification.refinements.refinements import (
     Refinements,
     without_creep,
@@ -50,7 +50,7 @@ from jointid.problem.constant_torque import balanced
 from jointid.problem.problem import Problem
 from jointid.problem.settings import USUAL, Settings
 from jointid.problem.terms import Request, TermChoice, choose_terms
-from jointid.recording.mending import Mend, mended
+from jointid.recording.corrections import Mend, mended
 from jointid.recording.motion import raise_if_hardly_moving, raise_if_still
 from jointid.recording.recording import Recording
 

@@ -9,7 +9,7 @@ from jointid.base.error_text import joint_phrase, printable
 from jointid.base.errors import InputError
 from jointid.estimate.answers import cut, findings, in_line, joint_lines
 from jointid.estimate.findings import Finding
-from jointid.estimate.objections import acts_against_motion
+from jointid.estimate.reasons_against_use import acts_against_motion
 from jointid.estimate.verdict import LEVELS
 from jointid.joints.record import FAILED, JointEstimatesRecord, JointResult
 

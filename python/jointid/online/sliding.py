@@ -13,7 +13,7 @@ from jointid import _core
 from jointid.balance.covariance import parameter_covariance
 from jointid.base.errors import InputError
 from jointid.identification.inference.inference import freedom_of, joint_of, parameters_of
-from jointid.identification.inference.undivided import divided, with_undivided
+from jointid.identification.inference.offset_or_asymmetry import divided, with_undivided
 from jointid.online.online_estimate import OnlineEstimate
 from jointid.online.pieces import SHORTEST, next_piece
 from jointid.online.plan import Plan, make_plan, outdated

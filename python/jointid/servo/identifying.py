@@ -17,7 +17,7 @@ from jointid.joint.checks import finite_number, positive_number
 from jointid.joint.joint import Joint
 from jointid.joint.model import AUTO, Model
 from jointid.recording.recording import Recording
-from jointid.servo.dividing import share_of
+from jointid.servo.back_emf_share import share_of
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.findings import findings_of
 from jointid.servo.fitted_servo import FittedServo

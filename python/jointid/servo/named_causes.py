@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.estimate.causes import Causes
-from jointid.estimate.objections import EXPLAINED
+from jointid.estimate.reasons_against_use import EXPLAINED
 from jointid.identification.causes.harm import possible
-from jointid.identification.causes.suspicion import suspicious
+from jointid.identification.causes.residual_test import suspicious
 from jointid.servo.estimate import ServoEstimate
 from jointid.servo.fitted_servo import FittedServo
 from jointid.servo.layout import KNOWN

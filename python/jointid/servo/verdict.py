@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-from jointid.estimate.objections import EXPLAINED, Objection, explained_text
+from jointid.estimate.reasons_against_use import EXPLAINED, Objection, explained_text
 from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
 from jointid.servo.layout import LOAD_FRICTION, SPEED_FRICTION
 from jointid.servo.record import ServoEstimateRecord

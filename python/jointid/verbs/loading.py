@@ -18,7 +18,7 @@ from jointid.recording.recording import Recording
 from jointid.recording.sides import MOTOR
 from jointid.recording.signals import FloatArray, Kind, TorqueHold
 from jointid.recording.wide.robot_recording import RobotRecording
-from jointid.verbs.kept_kinds import class_of_kind
+from jointid.verbs.result_kinds import class_of_kind
 from jointid.verbs.servo_log import servo_columns
 from jointid.verbs.signatures import shows
 from jointid.verbs.subjects import ask, check_options, is_robot, keywords

@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from jointid import _core
+from jointid.hardware.session.host_failure_travel import DeadHost
 from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.options import SessionOptions
 from jointid.hardware.session.start_checks import approach_to
-from jointid.hardware.session.travel_after_death import DeadHost
 from jointid.hardware.session.watchdog import Watchdog, watchdog_of
 from jointid.joint.joint import Joint
 from jointid.simulation.arguments import Controller

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.identification.inference.measuring_again import NoiseEffect, Shifts, noise_effect
+from jointid.identification.inference.added_noise import NoiseEffect, Shifts, noise_effect
 from jointid.identification.inference.velocity_noise import measured_again
 from jointid.joint.own_terms import OwnTerms
 from jointid.problem.problem import Problem

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.balance.covariance import Triangle
 from jointid.base.errors import InputError
-from jointid.identification.inference.measuring_again import Shifts
+from jointid.identification.inference.added_noise import Shifts
 from jointid.identification.search.domain import SearchDomain
 from jointid.problem.constant_torque import with_fixed_offset
 from jointid.problem.problem import Problem

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 from jointid import _core
 from jointid.balance.segments import Segments
 from jointid.base.values import dataclass
-from jointid.identification.inference.measuring_again import (
+from jointid.identification.inference.added_noise import (
     DRAWS,
     NoiseEffect,
     Shifts,
     noise_effect,
 )
-from jointid.identification.inference.shift_by_chance import variance_over_segments
+from jointid.identification.inference.random_shift import variance_over_segments
 from jointid.problem.problem import Problem
 from jointid.recording.extra_noise import noise_unit
 from jointid.recording.recording import Recording

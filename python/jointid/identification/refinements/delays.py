@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 
 from jointid.estimate.delays import Delay
-from jointid.identification.refinements.balance_misfit import SURE, fits_better, rows_of
+from jointid.identification.refinements.balance_residual import SURE, fits_better, rows_of
 from jointid.identification.refinements.balances import SMALL, SUSPECT, Motion, margin, reach
 from jointid.identification.refinements.command_noise import delay_in_command
 from jointid.identification.refinements.shift_fit import Balance, Shift, fit_shift

@@ -15,7 +15,7 @@ from jointid.identification.refinements.sensor_instant import SensorInstant
 from jointid.identification.refinements.slow_motion import contradicting
 from jointid.problem.problem import Problem
 from jointid.problem.windows import Windows
-from jointid.recording.mending import Mend
+from jointid.recording.corrections import Mend
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,9 +14,9 @@ from jointid.base.errors import InputError
 from jointid.estimate import selection as values
 from jointid.estimate.selection import Selection
 from jointid.identification.search.stated_bounds import known_parameters
+from jointid.identification.selection.candidate_models import Candidate, candidates
 from jointid.identification.selection.columns import ShapedColumns
-from jointid.identification.selection.contest import Entry, entry_of, held_out
-from jointid.identification.selection.rivals import Candidate, candidates
+from jointid.identification.selection.held_out_scores import Entry, entry_of, held_out
 from jointid.problem.block_sums import BlockSums
 from jointid.problem.problem import Problem
 from jointid.problem.terms import Request

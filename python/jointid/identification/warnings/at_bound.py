@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.objections import LARGE
+from jointid.estimate.reasons_against_use import LARGE
 from jointid.estimate.statistics import distance_from_bound
 from jointid.estimate.wording import percent, two_digits
 from jointid.identification.warnings.check import Check, FindingType

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
-from jointid.recording.mending import Mend
+from jointid.recording.corrections import Mend
 from jointid.recording.recording import Recording
 
 Array = NDArray[np.float64]

@@ -14,7 +14,7 @@ from jointid.identification.warnings.check import Check, FindingType
 from jointid.identification.warnings.evidence import Evidence
 from jointid.identification.warnings.inspection import Inspected
 from jointid.identification.warnings.repeated import REPEATED
-from jointid.recording.copies import fresh_rows
+from jointid.recording.held_rows import fresh_rows
 from jointid.recording.order_statistics import median
 from jointid.recording.recording import Recording
 

@@ -14,8 +14,8 @@ from jointid.identification.warnings.torque_facts import corrections_of
 from jointid.identification.warnings.unbounded import EXPLAINED, Unbounded, without_bounds
 from jointid.identification.warnings.units import IMPLAUSIBLE_UNITS, degrees_advice
 from jointid.identification.warnings.velocity import REVERSED_SIGN
-from jointid.problem.magnitude import is_magnitude, is_one_sided
 from jointid.problem.recordings import output_torque
+from jointid.problem.unsigned_torque import is_magnitude, is_one_sided
 from jointid.recording.sides import READ_FROM
 
 WRONG_SCALE = FindingType(

@@ -14,9 +14,9 @@ from jointid.base.unpacking import allowing
 from jointid.recording.attributes import check_kind
 from jointid.recording.column_lookup import column_index
 from jointid.recording.contents import Contents, read_contents
-from jointid.recording.copies import without_copies
 from jointid.recording.damaged_rows import NOTE
 from jointid.recording.even_rows import as_stated
+from jointid.recording.held_rows import without_copies
 from jointid.recording.readers.list_columns import with_list_columns
 from jointid.recording.readers.open_files import Source, reads_open_files
 from jointid.recording.readers.reader import Reader

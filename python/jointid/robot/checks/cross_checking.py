@@ -11,7 +11,7 @@ from jointid import _core
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import number, percent
-from jointid.robot.checks.second_look import SETTINGS, SecondLook, filtered_fit
+from jointid.robot.checks.filtered_regression import SETTINGS, SecondLook, filtered_fit
 from jointid.robot.fit.attempt import Attempt, Request
 from jointid.robot.links.models import shaped_term
 from jointid.robot.links.parameters import JOINT_FRICTION

@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from jointid.problem.magnitude import CLEAR, without
+from jointid.problem.unsigned_torque import CLEAR, without
 from jointid.robot.balance.inertia import InertiaColumns
+from jointid.robot.checks.filtered_regression import SETTINGS
 from jointid.robot.checks.plain_regression import Block, Columns
-from jointid.robot.checks.second_look import SETTINGS
 from jointid.robot.links.models import PLAIN
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.plain_motion import PlainSignals

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
-from jointid.problem.magnitude import BETTER, is_magnitude, is_one_sided, without
+from jointid.problem.unsigned_torque import BETTER, is_magnitude, is_one_sided, without
 from jointid.recording.wide.robot_recording import RobotRecording
 from jointid.robot.checks.exchanged_columns import joint_order
 from jointid.robot.checks.link_factors import LinkFactor, link_factor, link_rows

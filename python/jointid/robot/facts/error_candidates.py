@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from jointid.robot.balance.inertia import moment_columns
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.fit.excerpt_rows import ExcerptRows, Share
-from jointid.robot.fit.perturbed import moved_zeros, tilted_gravity
+from jointid.robot.fit.fact_derivatives import moved_zeros, tilted_gravity
 from jointid.robot.links.inertia_modes import FREE, SCALED
 from jointid.robot.links.robot import Robot
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from jointid.estimate.causes import Cause, Causes
 from jointid.estimate.findings import Finding
-from jointid.estimate.objections import EXPLAINED
+from jointid.estimate.reasons_against_use import EXPLAINED
 from jointid.identification.causes.cause_finding import finding_of_cause
 from jointid.identification.causes.causes import causes_of
 from jointid.identification.causes.harm import possible
-from jointid.identification.causes.suspicion import testable
+from jointid.identification.causes.residual_test import testable
 from jointid.robot.facts.fitted_joint import FittedJoint
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.result.finding_types import TYPES

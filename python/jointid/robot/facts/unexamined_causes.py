@@ -13,7 +13,7 @@ from jointid.base.advice import Action
 from jointid.estimate.causes import Causes
 from jointid.estimate.findings import Finding, Measured
 from jointid.estimate.wording import percent
-from jointid.identification.causes.suspicion import slow_misfit
+from jointid.identification.causes.residual_test import slow_misfit
 from jointid.robot.facts.named_causes import UNEXAMINED, cause_finding, causes_of_joint
 from jointid.robot.facts.one_call import with_one_call
 from jointid.robot.fit.attempt import Attempt

@@ -12,7 +12,7 @@ from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
 from jointid.robot.fit.attempt import Attempt
 from jointid.robot.fit.excerpt_rows import ExcerptRows
-from jointid.robot.fit.perturbed import tilted_gravity
+from jointid.robot.fit.fact_derivatives import tilted_gravity
 from jointid.robot.links.robot import Robot
 from jointid.robot.result.finding_types import TYPES
 

@@ -19,7 +19,7 @@ from jointid.robot.links.position_drive import facts_of_drive
 from jointid.robot.links.robot import Robot
 from jointid.robot.motion.driven import Driven, is_held
 from jointid.robot.motion.given_velocity import in_time, integrated, noise_of
-from jointid.robot.motion.loud_samples import quiet_velocity
+from jointid.robot.motion.noisy_samples import quiet_velocity
 from jointid.robot.motion.reversals import away_from_reversals
 
 Array = NDArray[np.float64]

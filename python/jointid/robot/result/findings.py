@@ -8,7 +8,7 @@ import numpy as np
 
 from jointid.base.advice import Action
 from jointid.estimate.findings import Finding, Measured
-from jointid.estimate.objections import LARGE
+from jointid.estimate.reasons_against_use import LARGE
 from jointid.estimate.statistics import distance_from_bound
 from jointid.estimate.wording import percent, rounded, two_digits
 from jointid.identification.inference.purposes import Torques

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from jointid.balance.covariance import Covariance
 from jointid.balance.segments import time_segments
-from jointid.identification.inference.held import held_intervals
+from jointid.identification.inference.bound_intervals import held_intervals
 from jointid.identification.inference.purposes import Torques, within
 from jointid.robot.balance.balance import Balance
 from jointid.robot.balance.fit import Fit

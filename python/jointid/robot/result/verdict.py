@@ -4,7 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from jointid.estimate.objections import EXPLAINED, Objection, explained_text, held_on_bounds
+from jointid.estimate.reasons_against_use import (
+    EXPLAINED,
+    Objection,
+    explained_text,
+    held_on_bounds,
+)
 from jointid.estimate.verdict import Verdict, concluded, to_changes, use_by
 from jointid.robot.links.parameters import FRICTION
 from jointid.robot.result.record import RobotEstimateRecord

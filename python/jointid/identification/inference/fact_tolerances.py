@@ -88,7 +88,7 @@ def _changes(
 ) -> Iterator[_Change]:
     facts, known = joint.facts, known_values(joint)
     for name, stated in joint.tolerances.given.items():
-        if name not in facts:  # the symmetry of friction: see undivided.py
+        if name not in facts:  # the symmetry of friction: see offset_or_asymmetry.py
             continue
         size = joint.tolerances.size(name, facts[name])
         scale = 0.0

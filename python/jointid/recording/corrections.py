@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from jointid.base.values import dataclass
-from jointid.recording.copies import without_held_rows
+from jointid.recording.held_rows import without_held_rows
 from jointid.recording.recording import Recording
 from jointid.recording.unwrapping import unwrapped
 

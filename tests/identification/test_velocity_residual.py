@@ -10,8 +10,8 @@ import jointid as jid
 from jointid.balance.covariance import parameter_covariance
 from jointid.balance.segments import even_segments
 from jointid.estimate.causes import Cause
-from jointid.identification.inference.velocity_misfit import beyond_velocity_noise
 from jointid.identification.inference.velocity_noise import measured_again
+from jointid.identification.inference.velocity_residual import beyond_velocity_noise
 from jointid.identification.prepared import Prepared, prepare
 
 _COUNTS = 202e3

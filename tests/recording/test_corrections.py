@@ -8,7 +8,7 @@ from analytic_motion import two_sines, worst
 from closed_loop import TRUTH, thesis_joint
 
 import jointid as jid
-from jointid.recording.mending import mended
+from jointid.recording.corrections import mended
 
 
 def wrapped(run: jid.Recording, low: float, size: float) -> jid.Recording:

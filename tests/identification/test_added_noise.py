@@ -11,10 +11,10 @@ from plants import Bench, Law, Log, simulate, thesis
 
 import jointid as jid
 from jointid.estimate.student import limited_half_width
+from jointid.identification.inference.added_noise import NoiseEffect
 from jointid.identification.inference.inference import _half_width
-from jointid.identification.inference.measuring_again import NoiseEffect
 from jointid.identification.inference.motion import Motion, motion_segments
-from jointid.identification.inference.shift_by_chance import variance_over_segments
+from jointid.identification.inference.random_shift import variance_over_segments
 from jointid.identification.inference.systematic import admissible_shifts
 from jointid.identification.inference.velocity_noise import measured_again
 from jointid.identification.prepared import prepare

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 import jointid as jid
 from jointid.identification.causes.fitted import Fitted
 from jointid.identification.prepared import prepare
-from jointid.identification.refinements.balance_misfit import fits_better
+from jointid.identification.refinements.balance_residual import fits_better
 from jointid.problem.problem import Problem
 from jointid.recording.shifting import shifted
 

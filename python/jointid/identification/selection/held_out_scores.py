@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from jointid import _core
 from jointid.base.values import dataclass
+from jointid.identification.selection.candidate_models import Candidate
 from jointid.identification.selection.columns import ShapedColumns
-from jointid.identification.selection.rivals import Candidate
 from jointid.problem.block_sums import BlockSums, Fitted
 
 Array = NDArray[np.float64]

@@ -7,8 +7,8 @@ import pytest
 from example_recordings import WELL_EXCITED
 
 import jointid as jid
-from jointid.recording.copies import without_copies
-from jointid.recording.mending import mended
+from jointid.recording.corrections import mended
+from jointid.recording.held_rows import without_copies
 
 
 def host_logged(well: jid.Recording, seed: int = 1) -> jid.Recording:
