@@ -66,7 +66,7 @@ def test_what_it_cannot_check_it_says() -> None:
     short = jid.identify(run[0.0:0.4]).cross_check
     assert short is not None
     assert short.disagrees is None
-    assert "too few rows" in short.reason
+    assert "too little steady motion" in short.reason
     loaded = jid.identify(
         run, model=jid.Model("coulomb_viscous", load_friction="drive")
     ).cross_check

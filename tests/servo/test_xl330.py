@@ -37,7 +37,7 @@ def test_compare_models_scores_by_rollouts(runs: list[jid.Recording]) -> None:
     found = jid.compare_models(runs, joint, score="rollout", models="coulomb_viscous:load_friction")
     assert np.degrees(found.medians[0]) <= 2.3
     assert found.models == ("coulomb_viscous:load_friction",)
-    with pytest.raises(jid.InputError, match="no option but models"):
+    with pytest.raises(jid.InputError, match="only the option models"):
         jid.compare_models(runs, joint, score="rollout", folds=3)  # type: ignore[call-overload]
     with pytest.raises(jid.InputError, match="voltage"):
         jid.compare_models(runs, joint.replace(voltage=None), score="rollout")

@@ -340,7 +340,7 @@ def test_trials_side_by_side_are_the_searches_one_by_one() -> None:
             assert found.best.tolist() == alone.best.tolist()
             assert (found.penalty, found.evaluations) == (alone.penalty, alone.evaluations)
             assert (found.stop, found.generations) == (alone.stop, alone.history[-1].number)
-    with pytest.raises(ValueError, match="as many, got 3 and 1"):
+    with pytest.raises(ValueError, match="equally many, got 3 and 1"):
         _core.minimise_trials(penalty, low, high, options=sizes, seeds=[1])
 
 

@@ -32,7 +32,7 @@ class Design(DesignFields, KeptResult):
         The motion, for `simulate` and for a session.
     joint : Joint
         The nominal joint: the values of the joint, or the middles of the prior's ranges.
-    The controller that moves the joint.
+    controller : Controller
         The controller that drives the joint.
     sensors : Sensors
         The sensors that record the motion.

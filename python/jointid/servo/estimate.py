@@ -23,8 +23,8 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
 
     Attributes
     ----------
-    The joint that was passed to `identify`.
-        As passed to `identify`.
+    joint : Joint
+        The joint that was passed to `identify`.
     parameters : mapping of str to ParameterEstimate
         "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), the coefficients of the friction model ("viscous",
         "coulomb"), "load_friction" (dry friction per torque through the gear: load plus motor), "inertia" (of the

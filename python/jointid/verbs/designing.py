@@ -40,8 +40,8 @@ def design(
     limits : MotionLimits or mapping, optional
         Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
         the sensor [N·m]; every joint of the prior keeps them. Default: the joint's.
-    Duration of the motion [s]. Default 12.
-        [s]. Default 12.
+    duration : float
+        Duration of the motion [s]. Default 12.
     controller : controller, optional
         The controller that will drive the joint. Default: an adaptive-robust law with the values of the nominal
         joint and without feedback of the torque sensor.

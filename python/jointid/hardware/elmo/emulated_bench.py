@@ -23,8 +23,8 @@ class ElmoEmulation:
     ----------
     idle_loop : float
         Time between two interpreter commands of the drive [s]. Default 0.0003.
-    Bits of a current command that the drive keeps: 24 for a float, 4 over the thesis's link. Default 24.
-        Bits of a current command that the drive keeps: 24 of a float, 4 over the thesis's link. Default 24.
+    mantissa_bits : int
+        Bits of a current command that the drive keeps: 24 for a float, 4 over the thesis's link. Default 24.
     idle_jitter : float
         Largest random addition to `idle_loop` [s]. Default 0.
     enable_time : float
