@@ -51,7 +51,7 @@ class Commissioning(Result):
     truth : mapping of str to float
         True parameters of an emulated joint; empty otherwise.
     true_run : BenchRun or None
-        Run of an emulated joint with the true parameters.
+        Last run of an emulated joint, in which the controller uses the true parameters; otherwise None.
     without_ripple : Estimate or None
         Last estimate, repeated without the model's ripple; None if the model has no ripple.
     """

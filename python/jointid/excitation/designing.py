@@ -111,7 +111,7 @@ def design_excitation(
         An argument is invalid, a parameter has no range, the limits allow no motion, or the control loop is
         unstable for a joint drawn from the prior.
     KeyboardInterrupt
-        Ctrl-C, within 0.1 s.
+        After Ctrl-C, within 0.1 s.
 
     Examples
     --------

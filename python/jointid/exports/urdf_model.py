@@ -142,7 +142,10 @@ def _robot(subject: Subject, nearest: Nearest, name: str) -> str:
     if not bounded and (position is not None or known):
         kept = [f"{key} limit {value}" for key, value in known.items() if not complete]
         kept += [f"position limits {list(position)}"] if position is not None else []
-        notes += [f"{each}: URDF has limits only together" for each in kept]
+        notes += [
+            f"{each}: left out, because URDF needs the limits of position, velocity and torque together"
+            for each in kept
+        ]
     if bounded and position is not None:
         known = {"lower": repr(position[0]), "upper": repr(position[1]), **known}
     kind = "prismatic" if slides else "revolute" if bounded else "continuous"

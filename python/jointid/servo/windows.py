@@ -81,7 +81,7 @@ class ServoGrid:
         return replace(self, columns=columns)
 
     def side(self, values: Array) -> Array:
-        """Return the sign of the gear's torque relative to the motion, for a solution: -1, 0 or 1."""
+        """Return the sign of the gear's torque relative to the motion (-1, 0 or 1), at these parameter values."""
         volts = self.voltage + values[HELD] * self.late
         motor = values[TORQUE] * volts - values[BACK_EMF] * self.velocity * self.driven
         return np.asarray(self.sign * np.sign(self.gravity + motor))

@@ -76,7 +76,7 @@ def simulate(
     InputError
         An argument is invalid, a simulation does not have a term of the model, or the loop is unstable.
     KeyboardInterrupt
-        Ctrl-C, within 0.1 s.
+        After Ctrl-C, within 0.1 s.
 
     Examples
     --------

@@ -182,7 +182,9 @@ def check_row(row: Row, header: dict[str, Any], first: dict[int, Row]) -> None:
     other = first.setdefault(row.cell, row)
     for name in ("values", "tracking"):
         if getattr(row, name).keys() != getattr(other, name).keys():
-            raise InputError("its names differ from those of the cell's other rows", argument=name)
+            raise InputError(
+                "this row has other names than the first row of the same cell", argument=name
+            )
 
 
 def _difference(known: dict[str, Any], wanted: dict[str, Any]) -> str:

@@ -81,7 +81,7 @@ def design(
         An argument cannot be used, a parameter has no range, the limits allow no motion, the loop is unstable for a
         joint of the prior, or the subject is not a joint.
     KeyboardInterrupt
-        Ctrl-C, within 0.1 s.
+        After Ctrl-C, within 0.1 s.
 
     Examples
     --------

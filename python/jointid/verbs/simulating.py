@@ -147,7 +147,7 @@ def simulate(
         An argument cannot be used, the simulation does not support a term of the model, the loop is unstable, a signal
         is missing, or the subject is not supported.
     KeyboardInterrupt
-        Ctrl-C, within 0.1 s.
+        After Ctrl-C, within 0.1 s.
 
     Examples
     --------

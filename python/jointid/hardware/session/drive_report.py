@@ -25,7 +25,7 @@ class Reported:
     expected : float, int, str or None
         Value that a session needs; None if any value is allowed.
     kind : str
-        "speed_limit" for the drive's own limit. Default: empty, not used by a session.
+        "speed_limit" if the entry is the drive's own speed limit. Default: empty, for an entry that is only reported.
     output : float or None
         The speed limit at the joint's output [rad/s]. Default: not known.
     """

@@ -82,7 +82,7 @@ class Session:
         Settings of the operating system while the motor is on; the recording's metadata list those that are not
         granted. Default: none.
     joint : Joint, optional
-        Inertia, friction and weight for limits that predict the motion. Default: the drive's `joint`.
+        Joint of the limits that predict the motion from inertia, friction and weight. Default: the drive's `joint`.
     designed_for : DesignedFor, optional
         Joint of a designed motion; the recording's metadata say how the session differs. Default: not known.
 

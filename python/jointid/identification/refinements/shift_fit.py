@@ -27,7 +27,7 @@ class Balance:
     columns : list of ndarray, each of shape (windows, columns)
         Columns over the used windows of each stretch.
     conservative : int
-        Number of leading columns without friction.
+        Number of columns without friction; they come first.
     held : bool
         Whether the signal is held between samples. A sample then belongs to the middle of the interval.
     """

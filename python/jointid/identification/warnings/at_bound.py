@@ -46,7 +46,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             measured[f"{p.name}.share"] = Measured(share)
         if small and limit == 0.0:
             yield AT_BOUND.finding(
-                f"{p.name} is 0, its bound; it is at most {two_digits(may_be)} {p.unit}, "
+                f"{p.name} ended on its bound, 0; the true value is at most {two_digits(may_be)} {p.unit}, "
                 f"{percent(share or 0.0)} of all friction",
                 evidence=measured,
                 parameters=(p.name,),

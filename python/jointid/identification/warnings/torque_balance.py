@@ -21,8 +21,8 @@ from jointid.recording.sides import READ_FROM
 WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
-    meaning="the inertia in the log differs from the known inertia by more than 5 %. A difference above 1 % that "
-    "explains the residual is a warning. Beyond a factor of 1.5, such a difference is blocking",
+    meaning="the inertia in the log differs from the known inertia by more than 5 %. If the difference "
+    "explains the residual: a warning from 1 %, blocking from a factor of 1.5",
     advice="correct gear ratio, torque constant, torque unit or inertia. Identify the inertia only if its known value "
     "is wrong",
 )

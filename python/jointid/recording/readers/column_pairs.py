@@ -19,7 +19,7 @@ _MILLISECONDS = (0.1, 100.0)  # steps that count as ms without a unit: 10 rows/s
 
 @dataclass(frozen=True, kw_only=True)
 class Paired:
-    """Layout of the channels in such a text.
+    """Layout of a text with a separate time column for each group of channels.
 
     Attributes
     ----------

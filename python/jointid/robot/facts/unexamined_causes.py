@@ -69,7 +69,11 @@ def misfit_findings(
     yield from harmless
     if concerned:
         left_over = {name: shares[name] for name in concerned}
-        yield _unexamined(estimate, left_over, "the named facts explain this" if explained else "")
+        yield _unexamined(
+            estimate,
+            left_over,
+            "the wrong facts in the other findings explain this residual" if explained else "",
+        )
 
 
 def _unexamined(
