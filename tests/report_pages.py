@@ -190,8 +190,10 @@ def of_a_robot_comparison() -> Shown:
 
 @cache
 def ring() -> Commissioning:
-    """One cycle on an emulated drive."""
-    return commission(Bench.load(_EXAMPLE), cycles=1, emulate=True, seed=1)
+    """Return one short cycle on an emulated drive."""
+    short = jid.Trajectory.thesis(amplitude=1.0, cycle=3.0, duration=6.0)
+    bench = replace(Bench.load(_EXAMPLE), trajectory=short)
+    return commission(bench, cycles=1, emulate=True, seed=1)
 
 
 def of_a_session() -> Shown:

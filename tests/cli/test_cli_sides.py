@@ -73,7 +73,7 @@ def test_a_side_needs_the_ratio_and_a_name(tmp_path: Path) -> None:
     path = log(tmp_path / "a.csv", velocity=100.0)
     with pytest.raises(jid.InputError, match="the gear ratio is needed to combine them"):
         jid.load(path, side={"velocity": "motor"})
-    with pytest.raises(jid.InputError, match="the velocity and torque the joint's;"):
+    with pytest.raises(jid.InputError, match="the velocity and torque on the joint side;"):
         jid.load(path, side={"position": "motor"})  # nothing is said of a reference
     with pytest.raises(jid.InputError, match="have a side of the gear"):
         jid.load(path, side={"current": "motor"}, gear_ratio=100.0)

@@ -9,7 +9,7 @@ import pytest
 import jointid as jid
 from jointid.cli.command_line import main
 from jointid.commissioning import Commissioning, commission
-from jointid.commissioning import commission as ring_module
+from jointid.commissioning import cycles as ring_module
 from jointid.estimate.findings import Finding
 from jointid.hardware.bench.bench import Bench
 

@@ -94,7 +94,9 @@ def test_what_is_itself_uncertain_is_said_in_its_errors(held: jid.Recording) -> 
     assert static.stderr is not None
     assert static.stderr > abs(static.value)
     notes = [each.cause for each in rich.findings if "no parameter noticeably" in each.cause]
-    assert any(re.search(r"static, itself uncertain, by 0\.\d+ of its error", n) for n in notes)
+    assert any(
+        re.search(r"static, itself uncertain, by 0\.\d+ of its standard error", n) for n in notes
+    )
     assert not any(re.search(r"static by .\d", n) for n in notes)
 
 

@@ -126,7 +126,7 @@ def test_a_sentence_names_a_few() -> None:
     assert "and 2 others: " in said.title
     assert "also coulomb[2] ± 6.1 %" in said.details
     (other,) = found("structured_residual", _moved(*many, causes=Causes(found=())))
-    assert "coulomb[2] and 4 others uncertain" in other.title
+    assert "coulomb[2] and 4 others (r = " in other.title
     assert "coulomb[3]" not in other.message
 
 

@@ -100,7 +100,7 @@ def hdf5_chunk(path: Path) -> str:
                 dataset.id.write_direct_chunk((0,), packed)
             except OSError:
                 pytest.skip("this HDF5 does not write a chunk so much larger than its numbers")
-    return "a chunk holds more than 96 bytes"
+    return "a chunk holds more than the expected 96 bytes"
 
 
 def hdf5_large_chunk(path: Path) -> str:

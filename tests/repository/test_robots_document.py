@@ -69,6 +69,7 @@ def test_facts_of_the_steps_are_read(tmp_path: Path) -> None:
     assert drive.kp == (20.0, 20.0)
 
 
+@pytest.mark.slow
 def test_the_reference_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     urdf = tmp_path / "arm.urdf"
     urdf.write_text(small_arm.URDF, encoding="utf-8")

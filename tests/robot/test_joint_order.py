@@ -99,9 +99,9 @@ def test_torques_in_another_order_are_named(
 @pytest.mark.parametrize(
     ("order", "code"),
     [
-        ([0, 2, 1, 3, 4, 5, 6], "swapped_joints"),
+        pytest.param([0, 2, 1, 3, 4, 5, 6], "swapped_joints", marks=pytest.mark.slow),
         ([2, 1, 0, 3, 4, 5, 6], "swapped_joints"),
-        ([2, 0, 1, 3, 4, 5, 6], "joint_order"),
+        pytest.param([2, 0, 1, 3, 4, 5, 6], "joint_order", marks=pytest.mark.slow),
     ],
 )
 def test_joints_in_another_order_are_named_with_the_call(
@@ -141,6 +141,7 @@ def test_columns_of_drives_in_another_order_are_named(
     assert said.title.startswith(f"the {what} of {NAMES[2]} and {NAMES[3]} are exchanged")
 
 
+@pytest.mark.slow
 def test_an_order_of_positions_alone_is_not_taken_for_another(run: jid.RobotRecording) -> None:
     """The torques that a drive makes of exchanged positions are no other joint's."""
     wrong = in_order(driven(run), [1, 0, 2, 3, 4, 5, 6], "position")

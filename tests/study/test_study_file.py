@@ -87,5 +87,5 @@ def test_a_row_of_no_cell_is_refused(tmp_path: Path) -> None:
 def test_a_row_with_other_columns_than_its_cell_is_refused(tmp_path: Path) -> None:
     other = Row(cell=0, trial=1, seed=1, status="converged", penalty=1.0, values={"viscous": 1.0})
     path = written(tmp_path / "a.jsonl", row(0, 0, 1.0), other)
-    with pytest.raises(jid.InputError, match="its names differ"):
+    with pytest.raises(jid.InputError, match="this row has other names"):
         read(path)
