@@ -66,11 +66,6 @@ class Errors:
         """Return the share of the intervals that contain the truth."""
         return float(np.mean([each.mean() for each in self.inside.values()]))
 
-    @property
-    def of_half_width(self) -> float:
-        """Return the RMS of errors over half-widths; it is 0.51 if intervals of 95 % have the right width."""
-        return float(np.sqrt(np.nanmean([each**2 for each in self.scaled.values()])))
-
 
 def of_estimate(found: jid.RobotEstimate) -> tuple[dict[str, Array], dict[str, Array]]:
     """Return values and half-widths of the intervals; a value without an interval has one of width 0."""

@@ -171,12 +171,6 @@ def test_the_least_integer_fits_and_the_next_does_not() -> None:
         Command(letters="PX", value=-(2**31) - 1)
 
 
-def test_a_command_with_a_value_assigns() -> None:
-    assert Command(letters="BG").executes
-    assert not Command(letters="BG", value=1).executes
-    assert not Command(letters="TC").executes
-
-
 def test_a_truth_value_is_no_index() -> None:
     with pytest.raises(jid.InputError, match="a whole number is expected"):
         Command(letters="CL", index=True)

@@ -13,9 +13,17 @@ ASKED = 0.9  # share of all mutants that must die
 PART = Part(
     title="Mutants",
     asked="Does a test fail when one line of the program is changed? {summary}, {minutes:.0f} minutes on one "
-    "processor. Of {named} places that survived a first trial by hand, {dead} die now.",
-    header=("list", "mutants", "killed", "justified", "survived", "not tried", "last trial"),
-    reading="The lists, `tools/mutants/lists`, say why a justified one may survive: `justified`.",
+    "processor. In a first trial by hand {named} mutants survived; now the tests kill {dead} of them.",
+    header=(
+        "list",
+        "mutants",
+        "killed by a test",
+        "justified",
+        "survived",
+        "not tried",
+        "last trial",
+    ),
+    reading="The entry `justified` in `tools/mutants/lists` says why a mutant may survive.",
 )
 
 

@@ -18,8 +18,6 @@ _QUERY_OR_ERROR, _FLOAT = 0x40, 0x80
 _LARGEST_INDEX = 0x3FFF
 _LARGEST_FLOAT = float(struct.unpack("<f", b"\xff\xff\x7f\x7f")[0])
 _LETTERS = re.compile(r"[A-Z]{2}")
-# Commands that act instead of assigning: sent without a value.
-EXECUTED = frozenset({"BG", "ST", "BT", "HX", "KL", "LD", "RS", "SV", "XC", "XQ"})
 
 
 class DriveError(RuntimeError):
@@ -77,11 +75,6 @@ class Command:
         """Letters and index, which the reply repeats."""
         return self.letters, self.index
 
-    @property
-    def executes(self) -> bool:
-        """Whether the command is executed: it has no value."""
-        return self.value is None and self.letters in EXECUTED
-
     def payload(self) -> bytes:
         """Return the bytes of the frame: four for a query or an execution, eight for an assignment.
 
@@ -107,7 +100,7 @@ class Command:
         """
         letters, index, flags = _head(payload)
         if len(payload) not in (4, 8):
-            raise InputError(f"a command of {len(payload)} bytes; 4 or 8 are expected")
+            raise InputError(f"a command has {len(payload)} bytes; 4 or 8 are expected")
         if len(payload) == 4 or flags & _QUERY_OR_ERROR:
             return cls(letters=letters, index=index)
         return cls(letters=letters, index=index, value=_value(payload, flags))
@@ -170,11 +163,11 @@ def _named(letters: str, index: int) -> str:
 
 def _head(payload: bytes) -> tuple[str, int, int]:
     if len(payload) < 4:
-        raise InputError(f"an interpreter frame of {len(payload)} bytes; at least 4 are expected")
+        raise InputError(f"an interpreter frame has {len(payload)} bytes; at least 4 are expected")
     letters = bytes(payload[:2]).decode("latin-1")
     if not _LETTERS.fullmatch(letters):
         raise InputError(
-            f"an interpreter frame that begins with {payload[:2].hex(' ')}; two capital letters are expected"
+            f"an interpreter frame begins with {payload[:2].hex(' ')}; two capital letters are expected"
         )
     return letters, payload[2] | (payload[3] & 0x3F) << 8, payload[3]
 

@@ -17,7 +17,7 @@ Read = Callable[[int], Number]
 Write = Callable[[int, Number], int]  # returns EC, 0 without an error
 
 # EC.
-BAD_COMMAND, BAD_INDEX, NO_MEANING, UNIT_MODE_NEEDED = 2, 3, 5, 12
+BAD_COMMAND, BAD_INDEX, NO_MEANING = 2, 3, 5
 OUT_OF_RANGE, NOT_ASSIGNED, MOTOR_MUST_BE_OFF, MOTOR_MUST_BE_ON = 21, 23, 57, 58
 BAD_UNIT_MODE, NOT_READY = 60, 66
 

@@ -8,8 +8,6 @@ from jointid.hardware.can.wire_time import bits_on_wire
 from jointid.hardware.elmo.options import ElmoOptions
 
 _EARLY = 0.25  # share of a SYNC: a frame that began by then was sent before the SYNC
-POSITION_LENGTH = 6
-"""Bytes of the position's frame, as `setup.map_position` maps it."""
 
 
 class SyncWatch:
