@@ -165,9 +165,7 @@ def test_several_joints_are_nobodys(tmp_path: Path) -> None:
 def test_mega_asks_whether_milli_is_meant(header: str, tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", lines(f"t_s,q_rad,{header}"))
     message = refusal(path)
-    assert (
-        "torque of a revolute joint is in MNm, where M is mega, a million (milli is mNm)" in message
-    )
+    assert "torque of a revolute joint is in MNm, where M means mega (milli is mNm)" in message
     assert "load with units={'torque': 'mNm'} (if milli is meant)" in message
     loaded = load(path, units={"torque": "mNm"})
     assert loaded.torque is not None
@@ -197,3 +195,10 @@ def test_german_words(tmp_path: Path) -> None:
     loaded = load(written(tmp_path / "a.csv", text))
     assert not loaded.velocity_derived
     assert loaded.velocity.tolist() == column(3)
+
+
+def test_the_proposed_units_make_unknown_columns_plausible(tmp_path: Path) -> None:
+    """A pasted remedy must not read degrees as radians, or milliamperes as amperes."""
+    rows = [f"{k / 100},{60.0 * math.sin(k / 20)},{4000.0 * math.cos(k / 20)}" for k in range(200)]
+    message = refusal(written(tmp_path / "a.csv", ["clk,ang_meas,mot_curr", *rows]))
+    assert "units={'time': 's', 'position': 'deg', 'current': 'mA'}" in message

@@ -3,8 +3,6 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from jointid.base.advice import Action
 from jointid.base.errors import InputError
 from jointid.recording.blocks import OF_BLOCKS
@@ -18,11 +16,11 @@ from jointid.recording.column_evidence import (
     values_of,
 )
 from jointid.recording.column_lookup import listed
+from jointid.recording.column_units import unit_by_values
 from jointid.recording.columns import Candidates, Column
 from jointid.recording.even_rows import EVENLY
 from jointid.recording.headers import plain, understood
-from jointid.recording.signals import NEEDED, TORQUES, dimensions, header_unit
-from jointid.recording.stamp_units import unit_of_stamps
+from jointid.recording.signals import NEEDED, TORQUES, dimensions
 from jointid.recording.table import Table
 from jointid.recording.units import UNITS, is_mega, unit_names
 
@@ -37,8 +35,8 @@ def of_both_kinds(table: Table, signal: str, columns: Sequence[Column]) -> Input
     """Return the error for a signal with columns in units of a revolute and of a prismatic joint."""
     first, second = (table.headers[column.index] for column in columns)
     return InputError(
-        f"{first!r} and {second!r} are both recognised as {signal}, of a revolute and of a "
-        "prismatic joint",
+        f"{first!r} and {second!r} are both recognised as {signal}; one has a unit of revolute joints, "
+        "the other has a unit of prismatic joints",
         place=table.header_place,
         remedy=tuple(_chosen(signal, column) for column in columns),
     )
@@ -59,17 +57,15 @@ def ambiguous(table: Table, signal: str, columns: Sequence[Column]) -> InputErro
 def in_other_unit(column: Column) -> str:
     """Return the problem with a column's unit as text."""
     if is_mega(column.unknown):
-        return (
-            f"is in {column.unknown}, where M is mega, a million (milli is m{column.unknown[1:]})"
-        )
+        return f"is in {column.unknown}, where M means mega (milli is m{column.unknown[1:]})"
     if column.unit is None:
         return f"has the unknown unit {column.unknown!r}"
     if column.documented is not None and column.documented.asked:
         return f"is {column.documented.asked} ({column.documented.source})"
     if column.unit is UNITS["lerobot"]:
         return (
-            "is in degrees, in rad, or in −100…100 of each joint's calibrated range: "
-            "a LeRobot dataset does not say"
+            "has no stated unit: LeRobot datasets use degrees, rad, or "
+            "−100…100 for each joint's calibrated range"
         )
     if column.unit.dimension == "raw reading":
         return "is a raw reading"
@@ -107,7 +103,10 @@ def wrong_unit(table: Table, signal: str, column: Column, kind: str) -> InputErr
         remedy = None
     else:
         remedy = Action(
-            "call", {"units": {signal: known[0]}}, function="load", text="if this is its unit"
+            "call",
+            {"units": {signal: known[0]}},
+            function="load",
+            text="if the column has this unit",
         )
     other: str | Action = "choose another column"
     if signal not in NEEDED:  # this signal is optional
@@ -130,7 +129,7 @@ def _of_dataset(table: Table) -> Action:
     return Action(
         "call",
         {"units": dict.fromkeys(units, "deg")},
-        "use rad instead of deg if it is in rad; if values run from −100 to 100, "
+        "write rad instead of deg for positions in rad; for values from −100 to 100, state "
         "scale = half of the joint's range in rad / 100",
         function="load",
     )
@@ -169,7 +168,7 @@ def missing(
     count = len(table.headers) if unnamed else 0
     if set(signals) == set(NEEDED) and count > _AT_MOST:
         return InputError(
-            f"{count} columns have no names, and their numbers do not show which signals they are",
+            f"the {count} columns have no headers, and the values do not identify the signals",
             place=table.header_place,
             remedy=OF_BLOCKS,
         )
@@ -216,7 +215,7 @@ def _asked(table: Table, found: Candidates, proposed: Mapping[str, int]) -> str:
     left = len(table.headers) - len({*known, *proposed.values()})
     if left < 1 or any(found.of.get(signal) or signal in proposed for signal in TORQUES):
         return ""
-    return "; which column is the torque or current? The numbers do not show it"
+    return "; which column is the torque or current? The values do not identify this column"
 
 
 def _with_absent(proposal: Action | None, absent: Sequence[str]) -> Action:
@@ -360,9 +359,7 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
         header = table.headers[index]
         columns[signal] = header if table.headers.count(header) == 1 else index
         if understood(header).unit is None:
-            units[signal] = header_unit(signal, kind or "revolute")
-            if signal == "time":
-                units[signal] = _unit_of_time(table, index)
+            units[signal] = unit_by_values(table, index, signal, kind or "revolute")
     units = {signal: unit for signal, unit in units.items() if unit}
     arguments: dict[str, Any] = {"columns": columns}
     if "position" in proposed and _is_of_motor(table.headers[proposed["position"]]):
@@ -372,27 +369,9 @@ def _proposal(table: Table, proposed: Mapping[str, int], kind: str | None) -> Ac
             "call",
             {**arguments, "units": units},
             function="load",
-            text="with the unit of each column",
+            text="check the unit of each column",
         )
     return Action("call", arguments, function="load")
-
-
-def _unit_of_time(table: Table, index: int) -> str:
-    """Return the likely unit of a proposed time column; empty if a later message asks for it."""
-    try:
-        (stamps,) = table.numbers([index])
-    except InputError:  # dates, or text: no unit is needed
-        return "s"
-    if not len(stamps):
-        return "s"
-    try:
-        with np.errstate(all="ignore"):
-            unit = unit_of_stamps(float(stamps[0]), stamps - stamps[0], "")
-    except InputError as error:  # prefer ms to s; other pairs are equally likely
-        calls = [each.arguments for each in error.remedy if isinstance(each, Action)]
-        units = [str(call["units"]["time"]) for call in calls if "units" in call]
-        return units[0] if len(units) == 1 or "s" in units else ""
-    return "s" if unit is None else unit.name if unit.name in UNITS else ""
 
 
 def _chosen(signal: str, column: Column) -> Action:

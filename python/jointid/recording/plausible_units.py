@@ -10,15 +10,9 @@ import numpy as np
 from jointid.base.values import dataclass
 from jointid.recording.recording import Recording
 from jointid.recording.signals import FloatArray
-from jointid.recording.units import UNITS
+from jointid.recording.units import LARGEST, UNITS, WIDE, WIDEST
 
-_WIDE = 4.0 * math.pi  # [rad]: two turns from zero; few joints move further
-_WIDEST = 3.0 * 360.0  # [deg]
 _FAST = 50.0  # [rad/s], of a joint with a gear
-_LARGEST = {
-    "current": (100.0, "A", "mA"),
-    "torque": (5000.0, "N·m", "mNm"),
-}  # largest usual values of a joint's drive
 _ALIKE = (
     0.03  # tolerance of the velocity over the position's rate; the ratios 6 and 2π differ by 5 %
 )
@@ -85,12 +79,12 @@ def unlikely_sizes(
         Allowed multiple of the largest usual value. Default 1.
     """
     found = {}
-    for signal, (limit, unit, smaller) in _LARGEST.items() if recording.kind == "revolute" else ():
+    for signal, (limit, unit, smaller) in LARGEST.items() if recording.kind == "revolute" else ():
         values = getattr(recording, signal)
         if signal in signals and values is not None:
             largest = float(np.abs(values).max())
             if largest > times * limit:
-                reason = f"up to {largest:.4g}; in {smaller} this is {largest / 1e3:.3g} {unit}"
+                reason = f"the largest value is {largest:.4g}; in {smaller}, this value is {largest / 1e3:.3g} {unit}"
                 found[signal] = ProposedUnit(smaller, reason)
     return found
 
@@ -98,10 +92,10 @@ def unlikely_sizes(
 def _of_motion(recording: Recording, unstated: set[str]) -> dict[str, ProposedUnit]:
     position = recording.position
     largest = float(np.abs(position).max())
-    wide = largest > _WIDE
+    wide = largest > WIDE
     recorded = not recording.velocity_derived and float(np.abs(recording.velocity).max()) > 0.0
     if not recorded:
-        if "position" in unstated and wide and largest <= _WIDEST:
+        if "position" in unstated and wide and largest <= WIDEST:
             return {"position": _angle(position, "deg")}
         return {}
     slope = _slope(np.gradient(position, recording.time), recording.velocity)
@@ -133,7 +127,9 @@ def _changed(recording: Recording, angle: str, speed: str, slope: float) -> dict
 def _angle(position: FloatArray, unit: str) -> ProposedUnit:
     low, high = float(position.min()), float(position.max())
     turns = (high - low) / (2.0 * math.pi)
-    return ProposedUnit(unit, f"{low:.4g} to {high:.4g}; in rad this is {turns:.3g} turns")
+    return ProposedUnit(
+        unit, f"values from {low:.4g} to {high:.4g}; in rad, this range is {turns:.3g} turns"
+    )
 
 
 def _slope(rate: FloatArray, velocity: FloatArray) -> float:

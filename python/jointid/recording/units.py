@@ -1,4 +1,4 @@
-"""Units that a header or `units` may name, and their conversion to SI."""
+"""Units that a header or `units` may name, their conversion to SI, and the unit that values suggest."""
 
 import math
 import re
@@ -224,3 +224,20 @@ def unit_names(dimensions: tuple[str, ...] = ()) -> tuple[str, ...]:
     return tuple(
         name for name, unit in UNITS.items() if not dimensions or unit.dimension in dimensions
     )
+
+
+# Usual sizes of a revolute joint's signals.
+WIDE = 4.0 * math.pi  # [rad]: two turns from zero; few joints move further
+WIDEST = 3.0 * 360.0  # [deg]
+LARGEST = {
+    "current": (100.0, "A", "mA"),
+    "torque": (5000.0, "N·m", "mNm"),
+}  # largest usual values of a joint's drive
+
+
+def likely_unit(signal: str, largest: float) -> str | None:
+    """Return the unit that makes the largest value of a revolute joint's signal plausible; None if SI is plausible."""
+    if signal == "position":
+        return "deg" if WIDE < largest <= WIDEST else None
+    limit, _, smaller = LARGEST.get(signal, (math.inf, "", ""))
+    return smaller if largest > limit else None

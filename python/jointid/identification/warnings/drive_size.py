@@ -26,7 +26,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
         usual = header_unit(signal, recording.kind)
         as_it_is = Action("call", {"units": {signal: usual}}, f"if these are {usual}", "load")
         yield IMPLAUSIBLE_UNITS.finding(
-            f"the {signal}{' has no stated unit and' * (signal in asked)} is {each.reason}",
+            f"{signal}{' without a unit' * (signal in asked)}: {each.reason}",
             Action("call", {"units": {signal: each.unit}}, function="load"),
             *([as_it_is] if signal in asked else []),
             severity="blocking" if signal in asked else "warning",
