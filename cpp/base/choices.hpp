@@ -28,7 +28,7 @@ Choice chosen(std::string_view asked) {
     if (Words<Choice>::all[i] == asked) return static_cast<Choice>(i);
     known.append(known.empty() ? "" : ", ").append(Words<Choice>::all[i]);
   }
-  throw InputError("known are " + known, std::string(Words<Choice>::field), std::string(asked));
+  throw InputError("choose one of " + known, std::string(Words<Choice>::field), std::string(asked));
 }
 
 }  // namespace jointid::base

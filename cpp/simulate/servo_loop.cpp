@@ -97,7 +97,7 @@ ServoMotion roll_out(const ServoLoop& loop, const ServoLog& log, double step,
   for (std::size_t i = 0; i < count; ++i) {
     const double position = servo.motion.position;
     if (!(std::fabs(position) < kFarthest)) {
-      throw base::InputError("the motion leaves all bounds", "ServoLoop", base::as_value(position));
+      throw base::InputError("the simulation diverges", "ServoLoop", base::as_value(position));
     }
     result.position.push_back(position);
     result.velocity.push_back(servo.motion.velocity);

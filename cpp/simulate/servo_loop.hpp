@@ -42,7 +42,7 @@ struct ServoMotion {
   std::vector<double> position, velocity;
 };
 
-/// Uses steps of at most `step` seconds. Throws base::InputError when the motion leaves all bounds.
+/// Uses steps of at most `step` seconds. Throws base::InputError when the simulation diverges.
 ServoMotion roll_out(const ServoLoop& loop, const ServoLog& log, double step,
                      const base::Cancel& cancel);
 

@@ -66,7 +66,7 @@ class Loop {
   double command(double time, const Reference& wanted, Faded* faded, double position,
                  double velocity, const Dynamics<double>& acting, bool sample, bool settled) {
     if (!(std::fabs(position) < kOutOfBounds && std::fabs(velocity) < kOutOfBounds)) {
-      throw base::InputError("the motion leaves all bounds " + std::to_string(time) +
+      throw base::InputError("the simulation diverges " + std::to_string(time) +
                              " s after its start: the loop is not stable");
     }
     const Observation shown = sensors_.observe({time, position, velocity, acting.link_torque});

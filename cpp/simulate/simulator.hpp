@@ -81,7 +81,7 @@ void simulate_on_this_thread(const Scenario& scenario, std::span<const Reference
                              std::span<const Setup> setups, std::span<Outcome> outcomes, Kept kept,
                              const base::Cancel& cancel);
 
-/// One Outcome per setup, in order. Throws base::InputError when a motion leaves all bounds.
+/// One Outcome per setup, in order. Throws base::InputError when a simulation diverges.
 std::vector<Outcome> simulate(const Scenario& scenario, const Trajectory& trajectory,
                               const std::vector<Setup>& setups, bool signals, base::Pool& pool);
 

@@ -41,7 +41,7 @@ CHECK_CASE("input error: a requirement names the number, its value and its limit
 CHECK_CASE("input error: an unknown word lists the known ones") {
   const auto error = refused([] { base::chosen<model::SpeedBasis>("square"); });
   CHECK(std::string(error.what()) ==
-        "basis is 'square': known are constant, linear, gaussian, general, rising");
+        "basis is 'square': choose one of constant, linear, gaussian, general, rising");
   CHECK(std::get<std::string>(error.value()) == "square");
 }
 

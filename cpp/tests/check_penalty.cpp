@@ -197,7 +197,7 @@ CHECK_CASE("penalty: bad terms and windows are refused with their name") {
   const auto torque = Residual::torque;
   CHECK_REFUSED(penalty_of({}, kTorqueOnly, torque), "at least one recording");
   CHECK_REFUSED(penalty_of({r}, {}, torque), "at least one term");
-  CHECK_REFUSED(penalty_of({r}, {"colomb"}, torque), "'colomb': known are inertia, coulomb");
+  CHECK_REFUSED(penalty_of({r}, {"colomb"}, torque), "'colomb': choose one of inertia, coulomb");
   CHECK_REFUSED(penalty_of({r}, {"viscous", "viscous"}, torque), "'viscous' is listed twice");
   CHECK_REFUSED(penalty_of({r}, kTorqueOnly, Residual::sensor), "sensor_gain");
   CHECK_REFUSED(penalty_of({with, r}, kWithSensor, torque), "sensor signal");

@@ -65,5 +65,5 @@ if __name__ == "__main__":
     arguments = parser.parse_args()
     for group in arguments.groups:
         if group not in GROUPS:
-            parser.error(f"group '{group}' is not known; known are {', '.join(GROUPS)}")
+            parser.error(f"group '{group}' is not known; choose one of {', '.join(GROUPS)}")
     main(arguments.output, arguments.groups or list(GROUPS), quick=arguments.quick)

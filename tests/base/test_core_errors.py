@@ -28,7 +28,7 @@ BAD: list[tuple[Any, str, Any, str]] = [
         lambda: jid.GaOptions(selection="best"),
         "GaOptions.selection",
         "best",
-        "known are tournament, roulette",
+        "choose one of tournament, roulette",
     ),
     (lambda: jid.Sensors(torque_noise=-1.0), "Sensors.torque_noise", -1.0, "must be finite and"),
     (
@@ -38,7 +38,7 @@ BAD: list[tuple[Any, str, Any, str]] = [
         "no such field; fields are stiffness",
     ),
     (lambda: _core.WindowOptions(count=-1), "windows.count", -1, "must be positive"),
-    (lambda: _core.term("colomb"), "term", "colomb", "known are inertia, coulomb"),
+    (lambda: _core.term("colomb"), "term", "colomb", "choose one of inertia, coulomb"),
     (
         lambda: _core.GaState.from_bytes(b"x"),
         "checkpoint of a genetic search",

@@ -50,9 +50,9 @@ def test_a_value_that_cannot_be_pickled_is_shown() -> None:
 
 
 def test_the_fields_are_shown() -> None:
-    error = InputError("known are a, b", argument="x", value="c", place="f", remedy="look")
+    error = InputError("choose one of a, b", argument="x", value="c", place="f", remedy="look")
     assert repr(error) == (
-        "InputError('known are a, b', argument='x', place='f', remedy=('look',), value='c')"
+        "InputError('choose one of a, b', argument='x', place='f', remedy=('look',), value='c')"
     )
     assert repr(InputError("no")) == "InputError('no')"
 

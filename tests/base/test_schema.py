@@ -61,8 +61,8 @@ def test_accepted(kind: Kind, value: Any) -> None:
         (Number(undefined=True), "-inf", "x: this is '-inf': a finite number"),
         (Number(whole=True), 1.0, "x: this is 1.0: an integer is expected"),
         (Text(), 1, "x: this is 1: text is expected"),
-        (Text(longest=2), "abc", "x: 3 characters, at most 2"),
-        (Text(known=("a", "b")), "c", "x: this is 'c': known are a, b"),
+        (Text(longest=2), "abc", "x: the text has 3 characters; at most 2"),
+        (Text(known=("a", "b")), "c", "x: this is 'c': choose one of a, b"),
         (Text(), "\ud800", "x: the text has half a character"),
         (Flag(), 1, "x: this is 1: true or false"),
         (OrNull(Flag()), 0, "x: this is 0: true or false"),
@@ -73,11 +73,11 @@ def test_accepted(kind: Kind, value: Any) -> None:
         (TableOf(NUMBER), [], r"x: this is \[\]: a table is expected"),
         (TableOf(NUMBER, 1), {"a": 1, "b": 2}, "x: at most 1 entries are expected, not 2"),
         (TableOf(NUMBER), {"a": None}, r"x\.a: this is None"),
-        (TableOf(NUMBER), {"a" * 300: 1}, "x: 300 characters"),
+        (TableOf(NUMBER), {"a" * 300: 1}, "x: the text has 300 characters"),
         (RECORD, {}, r"x\.a: this is missing"),
-        (RECORD, {"a": 1, "c": 2}, r"x\.c: unknown; known are b, a"),
+        (RECORD, {"a": 1, "c": 2}, r"x\.c: unknown key; choose one of b, a"),
         (RECORD, {"a": 1, "b": 2}, r"x\.b: this is 2: true or false"),
-        (Record({}, other=Plain()), {"a" * 300: 1}, "x: 300 characters"),
+        (Record({}, other=Plain()), {"a" * 300: 1}, "x: the text has 300 characters"),
         (Plain(), [{"a": float("inf")}], r"x\[0\]\.a: this is inf"),
         (Plain(), {"a": "\udfff"}, r"x\.a: the text has half a character"),
     ],
@@ -116,7 +116,7 @@ def test_a_large_file_is_not_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Pat
 
 def test_a_large_text_is_not_read(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("jointid.base.schema.LARGEST", 10)
-    with pytest.raises(InputError, match="too large: 12 characters, at most 10 are allowed"):
+    with pytest.raises(InputError, match="too large: 12 characters; at most 10 are allowed"):
         read_json("[1, 2, 3, 4]")
     assert read_json('{"a": [1]}') == {"a": [1]}
 
@@ -137,7 +137,7 @@ def test_a_device_without_a_size_is_not_read_without_limit(monkeypatch: pytest.M
         ('{"kind": "shoes", "schema": 0}', "schema: this is 0"),
         (
             '{"kind": "shoes", "schema": 3}',
-            "schema: this is 3: this jointid reads schemas up to 2; update",
+            "schema: this is 3: this version of jointid reads schemas up to 2; update",
         ),
     ],
 )

@@ -121,7 +121,9 @@ class Outcome:
         assert stop["limit"] in limits, stop
         assert stop["phase"] == "run"
         assert seen_off is None or stop["motor_off"] is seen_off, stop
-        assert ("THE MOTOR WAS NOT SEEN OFF" in stop["message"]) is not stop["motor_off"]
+        assert ("THE DRIVE DID NOT CONFIRM THAT THE MOTOR IS OFF" in stop["message"]) is not stop[
+            "motor_off"
+        ]
         recording = self.recording()
         assert recording.metadata["stopped"] == stop
         assert len(recording) == session["rows"] >= _SHORTEST

@@ -255,7 +255,7 @@ def test_no_output_is_written_over_an_input(
     asked = [str(tmp_path / files[word]) if word in files else word for word in words]
     assert main(asked) == 2
     text = capsys.readouterr().err
-    assert "would overwrite it" in text
+    assert "cannot overwrite it" in text
     assert text.count("\n") == 1
     for name in files.values():
         assert (tmp_path / name).read_text(encoding="utf-8") == f"{name}: to be kept"
@@ -263,4 +263,4 @@ def test_no_output_is_written_over_an_input(
 
 def test_a_report_is_a_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["identify", "run.csv", "--report", str(tmp_path / "report.pdf")]) == 2
-    assert "report.pdf: a report ends in one of .html, " in capsys.readouterr().err
+    assert "report.pdf: the file of a report ends in one of .html, " in capsys.readouterr().err

@@ -98,7 +98,7 @@ def test_an_emulated_session_leaves_the_joint_file_alone(
     own.write_bytes(BENCH.read_bytes())
     words = ["run", str(own), "--emulate", "--cycles", "1", "--quiet", "--save"]
     assert main([*words, str(own)]) == 2
-    assert "would overwrite it; give another name" in capsys.readouterr().err
+    assert "cannot overwrite it; give another name" in capsys.readouterr().err
     assert own.read_bytes() == BENCH.read_bytes()
 
 
@@ -123,18 +123,18 @@ def test_an_emulated_session_leaves_the_joint_file_alone(
         ("info good.csv --quiet", "jointid info: there is no option --quiet; see jointid info"),
         ("sweep good.csv --tracking", "--simulate JOINT"),
         ("sweep good.csv --grid sensors.torque_noise=1", "--simulate JOINT"),
-        ("simulate true.toml --gain saturation=-1", "no saturation; known are bandwidth, "),
+        ("simulate true.toml --gain saturation=-1", "no saturation; choose one of bandwidth, "),
         ("identify good.csv --joint sensor.toml", "or delete [sensor] from sensor.toml\n"),
         ("identify good.csv --joint text_ratio.toml", 'gear_ratio is "101": a number is expected'),
         (
             "report text.json",
-            "text.json: an estimate is expected, the .json file that identify saves",
+            "text.json: an estimate is expected: a .json file that identify saved",
         ),
         ("report broken.json", "broken.json: not JSON: line 1, column 2\n"),
-        ("report text_ratio.toml", "text_ratio.toml: an estimate is expected, the .json file"),
+        ("report text_ratio.toml", "text_ratio.toml: an estimate is expected: a .json file"),
         (
             "demo --output /proc/demo",
-            "--output /proc/demo: nothing can be written in the folder /proc; give another name",
+            "--output /proc/demo: no file can be written in the folder /proc; give another name",
         ),
         ("demo --output no/demo", "--output no/demo: the folder no does not exist"),
         ("demo --output good.csv", "--output good.csv: this is a file; a folder is expected"),
@@ -156,7 +156,7 @@ def test_a_session_into_a_full_folder_asks_for_another_name(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(["run", str(BENCH), "--emulate", "--output", str(folder)]) == 2
-    assert "overwrites nothing; give another name\n" in capsys.readouterr().err
+    assert "does not overwrite files; give another name\n" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -184,7 +184,7 @@ def test_what_was_typed_is_shown_as_it_was_typed() -> None:
 @pytest.mark.parametrize(
     ("name", "phrase"),
     [
-        ("down", "known are none, known, free"),
+        ("down", "choose one of none, known, free"),
         ("knwon", "did you mean 'known'?"),
         ("frree", "did you mean 'free'?"),
     ],

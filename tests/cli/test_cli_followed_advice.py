@@ -34,9 +34,12 @@ def test_only_identify_is_named_for_all_joints(capsys: pytest.CaptureFixture[str
 
 
 def test_all_joints_need_a_ratio_each(capsys: pytest.CaptureFixture[str]) -> None:
-    assert "one ratio for each, comma-separated" in answer(["identify", str(JOINTS)], capsys)[1]
+    assert (
+        "one ratio for each joint, separated by commas"
+        in answer(["identify", str(JOINTS)], capsys)[1]
+    )
     assert main(["identify", str(JOINTS), "--joints", "1,2", "--quiet"]) == 2
-    assert "joint angle; one value for each joint, comma-separated)" in capsys.readouterr().out
+    assert "joint angle; one value for each joint, separated by commas)" in capsys.readouterr().out
 
 
 def test_a_joint_file_is_no_joint_of_a_file(capsys: pytest.CaptureFixture[str]) -> None:
@@ -100,7 +103,7 @@ def test_two_files_to_save_to_are_refused(
     saves = [word for end in ("json", "toml") for word in ("--save", str(tmp_path / f"a.{end}"))]
     code, said = answer(["identify", str(FOREIGN / "ak80_swing_up.csv.gz"), *saves], capsys)
     assert code == 2
-    assert "--save: it is given twice" in said
+    assert "--save: this option is given twice" in said
     assert not list(tmp_path.iterdir())
 
 

@@ -44,7 +44,7 @@ def test_bare_numbers_show_no_torque(
     for signal, column in zip(("time", "position", "velocity"), right, strict=True):
         assert (f"{signal}='column {column}'" in said) == (column is not None)
     assert "which column is the torque or current?" in said
-    example = "as position=1:6 and torque=7:12"  # of blocks, of another file
+    example = "e.g. position=1:6, torque=7:12"  # of blocks, of another file
     assert "torque=" not in said.replace("torque=HEADER", "").replace(example, "")
 
 
@@ -106,7 +106,7 @@ def test_a_column_without_evidence_is_no_torque(
     path = log(tmp_path / "a.csv", f"time_s,position_rad,{header}", TIME, ANGLE, EFFORT)
     _, said = answer(["identify", path], capsys)
     assert said.endswith(
-        "load with --column torque=HEADER; or load with --column current=HEADER (if it is in amperes)\n"
+        "load with --column torque=HEADER; or load with --column current=HEADER (if the column is in amperes)\n"
     )
 
 

@@ -48,5 +48,7 @@ def test_what_is_no_page_is_refused_before_the_work(
     command: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main([*COMMANDS[command], "--report", "page.pdf"]) == 2
-    assert "--report page.pdf: a report ends in one of .html, " in capsys.readouterr().err
+    assert (
+        "--report page.pdf: the file of a report ends in one of .html, " in capsys.readouterr().err
+    )
     assert not Path("page.pdf").exists()

@@ -90,8 +90,8 @@ def test_what_a_log_lacks_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[
     Path(path).write_bytes(raw[: len(raw) * 2 // 3])
     assert main(["info", path]) == 0
     shown = " ".join(capsys.readouterr().out.split())
-    assert "the file ends early" in shown
-    assert "times are those of the logger: the messages have no stamps" in shown
+    assert "the end of the file is missing" in shown
+    assert "times are log times, because the messages have no time stamps" in shown
 
 
 def test_a_joint_is_identified_from_a_log(
@@ -126,7 +126,7 @@ def test_a_joint_is_identified_from_a_log(
     for name, parameter in same.parameters.items():
         assert found.parameters[name].value == pytest.approx(parameter.value, rel=1e-6)
     (finding,) = [each for each in found.findings if each.code == "message_log"]
-    assert "1 messages repeat another one" in str(finding)
+    assert "1 messages repeat another message" in str(finding)
     assert finding.evidence["repeated_messages"].value == 1
     assert main(["identify", str(path), "--topic", "/joint_states", "--model", model, "-v"]) == 0
-    assert "repeat another one and are left out" in " ".join(capsys.readouterr().out.split())
+    assert "repeat another message and are left out" in " ".join(capsys.readouterr().out.split())

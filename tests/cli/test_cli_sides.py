@@ -71,11 +71,11 @@ def test_the_ratio_of_the_joint_file_is_taken(
 
 def test_a_side_needs_the_ratio_and_a_name(tmp_path: Path) -> None:
     path = log(tmp_path / "a.csv", velocity=100.0)
-    with pytest.raises(jid.InputError, match="the gear ratio is needed to combine them"):
+    with pytest.raises(jid.InputError, match="the gear ratio is needed to combine these signals"):
         jid.load(path, side={"velocity": "motor"})
-    with pytest.raises(jid.InputError, match="the velocity and torque on the joint side;"):
+    with pytest.raises(jid.InputError, match="velocity and torque on the joint side;"):
         jid.load(path, side={"position": "motor"})  # nothing is said of a reference
-    with pytest.raises(jid.InputError, match="have a side of the gear"):
+    with pytest.raises(jid.InputError, match="can have a side"):
         jid.load(path, side={"current": "motor"}, gear_ratio=100.0)
     with pytest.raises(jid.InputError, match='"motor" or "joint" is expected'):
         jid.load(path, side={"velocity": "output"}, gear_ratio=100.0)

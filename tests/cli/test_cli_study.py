@@ -115,7 +115,7 @@ def test_the_recording_is_that_of_the_library(
         (["--controller", "pd"], "add --gain stiffness=VALUE"),
         (
             ["--controller", "pd", "--gain", "stiffness=1", "--believe", "x"],
-            "compensates no friction",
+            "does not compensate friction",
         ),
         (["--gain", "bandwith=3"], "did you mean 'bandwidth'"),
         (["--gain", "bandwidth=3", "--gain", "bandwidth=4"], "given twice"),
@@ -137,7 +137,7 @@ def test_simulate_refuses_in_a_line(
 
 def test_simulate_names_the_missing_values(folder: Path, capsys: Printed) -> None:
     assert main(["simulate", str(folder / "unknown.toml")]) == 2
-    assert "has no value" in capsys.readouterr().err
+    assert "a simulation needs a value" in capsys.readouterr().err
 
 
 def test_sweep_prints_writes_draws_and_goes_on(
@@ -198,7 +198,7 @@ def test_sweep_simulates(folder: Path, capsys: Printed) -> None:
     ("words", "text"),
     [
         ([], "give recordings or --simulate"),
-        ([WELL, "--simulate", "true.toml"], "exclude each other"),
+        ([WELL, "--simulate", "true.toml"], "recordings or a simulation"),
         ([WELL, "--grid", "windows=10", "--grid", "windows=20"], "given twice"),
         ([WELL, "--grid", "windos=10"], "did you mean"),
         ([WELL, "--grid", "windows"], "not of the form NAME=VALUE"),
@@ -240,6 +240,6 @@ def test_a_sweep_whose_model_nobody_named_says_which_it_has(
     call = ["sweep", str(WELL_EXCITED), "--grid", "windows=50,100"]
     call += ["--trials", "1", "--method", "separable", "--quiet"]
     assert main(call) == 0
-    assert "model: coulomb_viscous, since none is named" in capsys.readouterr().out
+    assert "model: coulomb_viscous, because no model is named" in capsys.readouterr().out
     assert main([*call, "--model", "stribeck"]) == 0
-    assert "since none is named" not in capsys.readouterr().out
+    assert "because no model is named" not in capsys.readouterr().out

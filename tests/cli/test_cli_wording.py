@@ -163,8 +163,8 @@ def test_advice_extends_the_model_of_the_command_line() -> None:
     [
         (
             "identify",
-            InputError("known are ga, separable", argument="method", value="genetic"),
-            "--method genetic: known are ga, separable",
+            InputError("choose one of ga, separable", argument="method", value="genetic"),
+            "--method genetic: choose one of ga, separable",
         ),
         (
             "info",

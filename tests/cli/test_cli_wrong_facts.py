@@ -97,7 +97,7 @@ def test_a_position_of_the_motor_in_stated_units_is_named_and_read(
         columns["velocity_rpm"] = 200.0 * SPEED * 30.0 / np.pi
     path = log(tmp_path / "a.csv", **columns, motor_torque_mNm=CURRENT * 5e3 / 200.0)
     text = shown([path, "--gear-ratio", "200"], capsys)
-    assert "the position is probably the motor's" in text
+    assert "the position is probably the motor angle" in text
     check_cured(path, ["--gear-ratio", "200"], capsys)
 
 

@@ -104,9 +104,9 @@ def test_the_report_says_what_is_not_in_it(
         # A column that nobody knows may be the position: a log, and no table of steady speeds.
         ("clock,speed,torque", [], "no position column"),
         ("time,speed,torque", [], "no position column"),
-        ("speed,torque", ["--save", "a.toml"], "--save: a table of steady speeds"),
-        ("speed,torque", ["--model", "stribeck"], "--model: a table of steady speeds"),
-        ("speed,torque", ["--where=speed=1"], "--where: a table of steady speeds"),
+        ("speed,torque", ["--save", "a.toml"], "--save: this file is a table of steady speeds"),
+        ("speed,torque", ["--model", "stribeck"], "--model: this file is a table of steady speeds"),
+        ("speed,torque", ["--where=speed=1"], "--where: this file is a table of steady speeds"),
     ],
 )
 def test_other_tables_are_refused_as_before(
@@ -130,7 +130,7 @@ def test_other_tables_are_refused_as_before(
 def test_too_few_rows_are_counted(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     v = np.array([1.0, 2.0, 0.0])
     assert main(["identify", str(table(tmp_path / "a.csv", v, v))]) == 2
-    assert "2 rows with 2 different speeds other than 0" in capsys.readouterr().err
+    assert "2 rows with 2 different speeds above 0" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

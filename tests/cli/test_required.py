@@ -39,7 +39,7 @@ def test_a_worse_verdict_exits_4_only_where_it_is_asked_for(
             given = ("--require", *option) if option else ()
             found, said = ran(capsys, logs[name], "--model", "stribeck", *given)
             assert found == code, (name, option, said)
-            assert ("--require asks for" in said) == (code == 4)
+            assert ("--require needs" in said) == (code == 4)
 
 
 def test_what_is_asked_for_is_written_all_the_same(
@@ -48,7 +48,7 @@ def test_what_is_asked_for_is_written_all_the_same(
     save = ("--save", tmp_path / "estimate.json", "--require", "care")
     code, said = ran(capsys, logs["bad"], *save)
     assert code == 4
-    assert 'the verdict is "not usable", and --require asks for "usable with care": ' in said
+    assert 'the verdict is "not usable", but --require needs "usable with care": ' in said
     assert (tmp_path / "estimate.json").exists()
 
 

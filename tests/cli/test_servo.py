@@ -136,4 +136,4 @@ def test_a_file_of_several_runs_is_read_whole(
 def test_one_run_is_one_run(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = ["identify", folder / "runs" / "run0.csv", "--joint", folder / "servo.toml"]
     assert main([*map(str, command), "--rollout"]) == 0
-    assert "from the log, median of 1 run\n" in capsys.readouterr().out
+    assert "°, median of 1 run\n" in capsys.readouterr().out

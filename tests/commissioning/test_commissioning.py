@@ -57,7 +57,7 @@ def test_the_effect_of_ripple_is_reported(ring: Commissioning) -> None:
     plain = abs(ring.without_ripple.parameters["static"].value / truth - 1.0)
     modelled = abs(ring.estimates[-1].parameters["static"].value / truth - 1.0)
     assert plain > 1.5 * modelled
-    assert "Errors without the sensor's ripple in the model" in ring.report()
+    assert "Errors of an estimate without the sensor's ripple in the model" in ring.report()
 
 
 def test_the_report_says_how_many_times_smaller_an_error_is(ring: Commissioning) -> None:
@@ -126,7 +126,7 @@ def test_the_command_writes_runs_and_saves_the_bench(
     for name in ("initial.log", "cycle_1.json", "report.html", "ring.txt"):
         assert (runs / name).stat().st_size > 0
     assert main([*words, "--quiet"]) == 2
-    assert "overwrites nothing" in capsys.readouterr().err
+    assert "does not overwrite files" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -158,7 +158,9 @@ def test_a_stop_is_exit_code_three(tmp_path: Path, capsys: pytest.CaptureFixture
     assert "tracking_error" in wording
     first, second, third = wording.splitlines()
     assert first.startswith("jointid run: stopped by tracking_error")
-    assert second == f"the motor was seen off; recorded: {output / 'initial.csv'}"
+    assert (
+        second == f"the drive confirmed that the motor is off; recorded: {output / 'initial.csv'}"
+    )
     assert (output / "initial.csv").exists()
     assert third == f"report: {output / 'report.html'}"
     assert (output / "report.html").exists()
@@ -245,7 +247,7 @@ def test_the_joint_is_not_moved_with_values_that_cannot_be_used(
 
 def test_a_recording_that_nobody_keeps_is_not_made(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(EXAMPLE), "--emulate", "--cycles", "0"]) == 2
-    assert "--cycles 0: with 0 cycles the session only records" in capsys.readouterr().err
+    assert "--cycles 0: with 0 cycles, the session only records" in capsys.readouterr().err
 
 
 def test_json_tells_how_a_run_ended(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -287,4 +289,4 @@ def test_ctrl_c_between_two_motions_says_where_the_recording_is(
     runs, bench = tmp_path / "runs", short(tmp_path)
     assert main(["run", str(bench), "--emulate", "--output", str(runs), "--quiet"]) == 130
     said = capsys.readouterr().err
-    assert f"the motor was seen off; recorded: {runs / 'initial.csv'}" in said
+    assert f"the drive confirmed that the motor is off; recorded: {runs / 'initial.csv'}" in said

@@ -163,13 +163,13 @@ def test_the_simplest_within_one_standard_error_wins() -> None:
     judged, winner, reason = judge(entries)
     assert judged[winner].model == "also_middle"
     assert (
-        "simplest model within one standard error of the best, rich (residual 10.0 ± 1.0 %)"
+        "simplest model within one standard error of the best model, rich (residual 10.0 ± 1.0 %)"
         in reason
     )
     assert [entry.reason.split(",")[0] for entry in judged] == [
-        "not significantly better",
-        "not significantly better",
-        "worse than the best by more than one standard error",
+        "not significantly better than the chosen model",
+        "not significantly better than the chosen model",
+        "worse than the best model by more than one standard error",
         "chosen",
     ]
 
@@ -368,7 +368,7 @@ def compare(**options: object) -> Callable[[], object]:
     [
         (compare(models=()), "at least one"),
         (compare(models=("stribeck", "stribeck")), "it is given twice"),
-        (compare(models=("magic",)), "known are coulomb_viscous"),
+        (compare(models=("magic",)), "choose one of coulomb_viscous"),
         (compare(models=(3,)), "model is 3: "),
         (compare(models=(("stribeck", 3),)), "a mapping of its fields is expected"),
         (compare(models=("stribeck:magic",)), "model: magic: a model has no such option"),

@@ -180,19 +180,19 @@ def test_the_path_is_named() -> None:
 @pytest.mark.parametrize(
     ("path", "junk", "reason"),
     [
-        (("free", 0), '"coulomb"', "there twice"),
+        (("free", 0), '"coulomb"', "has it twice"),
         (("free", 0), '"current"', "this is not a parameter"),
-        (("settings", "terms", 0), '"ripple_cos_2"', "not a term with a value"),
-        (("settings", "terms", 0), '"friction"', "not a term with a value"),
-        (("parameters", "coulomb", "name"), '"static"', "not the name"),
+        (("settings", "terms", 0), '"ripple_cos_2"', "this term is unknown, or its"),
+        (("settings", "terms", 0), '"friction"', "this term is unknown, or its"),
+        (("parameters", "coulomb", "name"), '"static"', "differs from the key"),
         (("covariance",), "[[1.0]]", "4 rows of 4"),
         (("covariance", 1), "[1.0]", "4 rows of 4"),
         (("windows", "start"), "[1.0]", "same length"),
         (("convergence", "best"), "[1.0]", "same length"),
-        (("windows", "recording", 0), "1", "fewer recordings"),
-        (("findings", 0, "advice", 0, "kind"), '"shout"', "known are call, record, inspect"),
+        (("windows", "recording", 0), "1", "no recording with this number"),
+        (("findings", 0, "advice", 0, "kind"), '"shout"', "choose one of call, record, inspect"),
         (("findings", 0, "advice", 0, "arguments"), "{}", "a call needs arguments"),
-        (("findings", 0, "severity"), '"mild"', "known are info, warning, blocking"),
+        (("findings", 0, "severity"), '"mild"', "choose one of info, warning, blocking"),
     ],
 )
 def test_fields_that_contradict_each_other(path: Path_, junk: str, reason: str) -> None:

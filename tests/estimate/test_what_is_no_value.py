@@ -58,14 +58,14 @@ def test_a_friction_that_is_not_there_is_a_good_value(
     compensation = "not usable" if frictionless else "usable"
     assert levels(found) == (compensation, "usable", "usable"), found.verdict.reasons
     for p in found.parameters.values():
-        if p.at_bound is not None:  # "at most" holds what is true
+        if p.at_bound is not None:  # "up to" includes the true value
             assert p.interval is not None
             assert p.interval[0] < 0.0 < p.interval[1] < 0.1
             if frictionless:
                 continue
             said = next(each for each in found.findings if each.parameters == (p.name,))
             assert (said.code, said.severity) == ("at_bound", "info")
-            assert "at most" in said.title
+            assert "may be up to" in said.title
 
 
 @pytest.mark.parametrize("negative", [-0.3, -1.0])

@@ -31,10 +31,13 @@ PRIOR = {"torque_offset": (-1.0, 1.0)}
         ({"duration": 1e6}, "duration is 1000000.0: 8 to 1000000 control periods of 0.001 s"),
         ({"parameters": 5}, "parameters is 5: a list of names is expected"),
         ({"callback": 3}, "callback is 3: a callable is expected"),
-        ({"prior": 0.3}, "prior is 0.3: a range by parameter, or values of joints, are expected"),
-        ({"prior": "viscous"}, "prior is 'viscous': a range by parameter"),
+        ({"prior": 0.3}, "prior is 0.3: a mapping from parameters to ranges, or a list"),
+        ({"prior": "viscous"}, "prior is 'viscous': a mapping from parameters"),
         ({"prior": PRIOR | {"viscous": (-5.0, 2.0)}}, "prior: viscous is [-5.0, 2.0]: it cannot"),
-        ({"limits": LIMITS | {"acceleration": 1e-6}}, "no motion was found from which the joint"),
+        (
+            {"limits": LIMITS | {"acceleration": 1e-6}},
+            "no motion was found that identifies the joint",
+        ),
     ],
 )
 def test_what_cannot_be_used_is_named(changes: dict[str, Any], says: str) -> None:

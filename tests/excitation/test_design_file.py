@@ -103,12 +103,20 @@ def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:
         (
             "schema = 1",
             "schema = 2",
-            "schema is 2: this jointid reads schemas up to 1; update jointid",
+            "schema is 2: this version of jointid reads schemas up to 1; update jointid",
         ),
         ("schema = 1", "", "schema: this is missing"),
-        ('criterion = "worst"', 'criterion = "best"', r"design\.criterion: .*known are worst, det"),
+        (
+            'criterion = "worst"',
+            'criterion = "best"',
+            r"design\.criterion: .*choose one of worst, det",
+        ),
         ('weakest = "sensor_gain"', 'weakest = "gain"', r"design\.weakest: .*in \[expected\]"),
-        ("[-1.0, 1.0]", "[0.0, 5e-324]", r"limits: position is \[0\.0, 5e-324\]: at least 1e-09"),
+        (
+            "[-1.0, 1.0]",
+            "[0.0, 5e-324]",
+            r"limits: position is \[0\.0, 5e-324\]: a window that is at least 1e-09",
+        ),
         ("[-1.0, 1.0]", "[-1e308, 1e308]", r"limits: position .*at most 1e\+09 from 0"),
         ("velocity = 3.4", "velocity = 5e-324", "limits: velocity is 5e-324: at least 1e-09"),
         ("seed = 3", "seed = -3", r"design\.seed: .*a number from 0"),
@@ -121,7 +129,7 @@ def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:
             "[expected.static]\nunits",
             r"expected\.static\.unit: this is missing",
         ),
-        ('law = "adaptive_robust"', 'law = "adaptive"', r"controller\.law: .*known are"),
+        ('law = "adaptive_robust"', 'law = "adaptive"', r"controller\.law: .*choose one of"),
         ("bandwidth = 80.0", 'bandwidth = "wide"', r"controller\.bandwidth: .*a number"),
         ("bandwidth = 80.0", "bandwidth = -80.0", "controller: .*bandwidth"),
         ("bandwidth = 80.0", "bandwith = 80.0", r"controller\.bandwith: unknown"),
@@ -131,10 +139,10 @@ def test_a_motion_alone_is_no_design(tmp_path: Path) -> None:
         (
             "position = [-1.0, 1.0]",
             "position = [1.0, -1.0]",
-            "limits: position .*the first must be",
+            "limits: position .*the first value must be",
         ),
         ("velocity = 3.4", "velocity = 0.0", "limits: velocity is 0.0: more than 0"),
-        ('form = "sines"', 'form = "sins"', r"trajectory\.form: .*known are"),
+        ('form = "sines"', 'form = "sins"', r"trajectory\.form: .*choose one of"),
         ("[peaks]", "[peeks]", "peaks: this is missing|peeks: unknown"),
         ("[sensors]", '[sensors]\nlaw = "pd"', r"sensors\.law: unknown"),
         ("[sensors]", "[sensors.x]", r"sensors\.x: unknown"),
@@ -177,7 +185,7 @@ def test_a_session_does_not_run_the_file_of_a_later_jointid(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     path.write_text(text.replace("schema = 1", "schema = 2", 1), encoding="utf-8")
     with pytest.raises(
-        jid.InputError, match=r"schema is 2: this jointid reads schemas up to 1; update"
+        jid.InputError, match=r"schema is 2: this version of jointid reads schemas up to 1; update"
     ):
         load_motion(path)
 

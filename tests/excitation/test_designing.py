@@ -285,7 +285,7 @@ def test_without_sensors_and_controller_both_are_assumed() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"criterion": "best"}, "worst and determinant"),
+        ({"criterion": "best"}, "worst, determinant"),
         ({"parameters": ["inertia"]}, "free"),
         ({"parameters": []}, "at least one"),
         ({"prior": {"coulomp": (1.0, 2.0)}}, "coulomb"),
@@ -306,7 +306,7 @@ def test_a_parameter_without_a_range_is_asked_for() -> None:
     unbounded = joint.replace(
         parameters={n: p for n, p in joint.parameters.items() if n != "coulomb"}
     )
-    with pytest.raises(jid.InputError, match=r"coulomb.*how large") as refused:
+    with pytest.raises(jid.InputError, match=r"coulomb.*range of") as refused:
         jid.design_excitation(unbounded, LIMITS, search=QUICK)
     assert "prior" in str(refused.value)
 
@@ -319,7 +319,7 @@ def test_limits_that_leave_no_motion_are_refused() -> None:
 
 
 def test_more_torque_than_the_drive_has_is_refused() -> None:
-    with pytest.raises(jid.InputError, match=r"torque.*beyond the drive's own limit of 159.984"):
+    with pytest.raises(jid.InputError, match=r"torque.*above the drive's own limit of 159.984"):
         jid.design_excitation(
             thesis_joint(), {**LIMITS, "torque": 200.0}, prior=around(), search=QUICK
         )

@@ -42,10 +42,10 @@ def test_the_smaller_of_torque_and_current_counts() -> None:
     ("given", "says"),
     [
         (3, "limits is 3: MotionLimits or a mapping of them is expected"),
-        (STATED | {"speed": 1.0}, "limits: speed: there is no such limit; known are position"),
+        (STATED | {"speed": 1.0}, "limits: speed: there is no such limit; choose one of position"),
         (STATED | {"velocty": 1.0}, "did you mean 'velocity'"),
         (STATED | {"position": 1.0}, "limits: position is 1.0: a lowest and a highest"),
-        (STATED | {"position": (1.0, 1.0)}, "the first must be below the second"),
+        (STATED | {"position": (1.0, 1.0)}, "the first value must be below the second"),
         (STATED | {"position": (1.0, float("nan"))}, "position is nan: a finite number"),
         (STATED | {"velocity": 0.0}, "limits: velocity is 0.0: more than 0"),
         (STATED | {"velocity": "fast"}, "limits: velocity is 'fast': a number"),
@@ -61,9 +61,12 @@ def test_limits_that_cannot_be_used_are_named(given: Any, says: str) -> None:
 @pytest.mark.parametrize(
     ("changes", "says"),
     [
-        ({"position": np.array([-9.0, 9.0])}, "position is [-9.0, 9.0]: it reaches beyond"),
-        ({"velocity": np.float32(9.0)}, "velocity is 9.0: it is beyond the joint's own limit of 4"),
-        ({"velocity": np.int64(9)}, "velocity is 9.0: it is beyond the joint's own limit of 4"),
+        ({"position": np.array([-9.0, 9.0])}, "position is [-9.0, 9.0]: this is outside"),
+        (
+            {"velocity": np.float32(9.0)},
+            "velocity is 9.0: this is above the joint's own limit of 4",
+        ),
+        ({"velocity": np.int64(9)}, "velocity is 9.0: this is above the joint's own limit of 4"),
     ],
 )
 def test_limits_of_numpy_are_held_within_the_joints_own(changes: Any, says: str) -> None:
@@ -78,7 +81,7 @@ def test_a_limit_that_nobody_states_is_asked_for(name: str) -> None:
     stated = {**STATED, "torque": 50.0}
     del stated[name]
     with pytest.raises(
-        jid.InputError, match=f"limits: {name}: it is needed, and the joint's limits"
+        jid.InputError, match=f"limits: {name}: this limit is needed, but the joint"
     ):
         MotionLimits.of(stated, joint)
 

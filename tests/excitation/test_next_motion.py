@@ -145,9 +145,11 @@ def test_what_is_given_is_not_overruled(poor: jid.Estimate, handed: dict[str, An
 
 
 def test_what_cannot_be_asked_for(poor: jid.Estimate, first: jid.Recording) -> None:
-    with pytest.raises(jid.InputError, match="no free parameter of this name; free are coulomb"):
+    with pytest.raises(
+        jid.InputError, match="no free parameter of this name; choose one of coulomb"
+    ):
         poor.next_motion(LIMITS, parameters=("inertia",))
-    with pytest.raises(jid.InputError, match="velocity: it is needed"):
+    with pytest.raises(jid.InputError, match="velocity: this limit is needed"):
         poor.next_motion({"position": (-1.0, 1.0)})
     nothing = np.zeros((0, 0))
     fixed = dataclasses.replace(poor, free=(), covariance=nothing, information=nothing)

@@ -213,5 +213,5 @@ def test_facts_may_come_from_another_joint(shared_data: Path) -> None:
     joint = joint_of(bare, posterior_of(bare), THESIS)
     assert joint.link == THESIS.link
     assert joint.parameters["coulomb"].value == bare.parameters["coulomb"].value
-    with pytest.raises(jid.InputError, match="must be those of the estimate's joint"):
+    with pytest.raises(jid.InputError, match="must be the same as in the joint of the estimate"):
         joint_of(bare, posterior_of(bare), jid.Joint(inertia=1.0))

@@ -17,13 +17,15 @@ def test_all_parameters_without_a_range_are_named_at_once() -> None:
     with pytest.raises(jid.InputError) as refused:
         ranges_of(JOINT, ("coulomb", "static", "viscous", "stribeck"), None)
     assert str(refused.value) == (
-        "joint: viscous, stribeck: nothing says how large they may be; give their min and max in the joint or "
+        "joint: viscous, stribeck: the range of these parameters is unknown; give their min and max in the joint or "
         "design with prior={'viscous': ..., 'stribeck': ...}"
     )
 
 
 def test_one_parameter_without_a_range_is_one() -> None:
-    with pytest.raises(jid.InputError, match="viscous: nothing says how large it may be; give its"):
+    with pytest.raises(
+        jid.InputError, match="viscous: the range of this parameter is unknown; give its"
+    ):
         ranges_of(JOINT, ("coulomb", "viscous"), None)
 
 

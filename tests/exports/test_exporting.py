@@ -52,13 +52,13 @@ def test_a_file_states_what_was_not_determined(tmp_path: Path, ending: str) -> N
     )
     doubtful = dataclasses.replace(estimate, parameters={**estimate.parameters, "static": weak})
     text = text_of(doubtful, tmp_path / f"joint{ending}")
-    assert "The recording did not determine these values, or not well: static." in text
+    assert "The recording determines these values poorly or not at all: static." in text
     assert "held at its bound max" in text
-    assert "did not determine" not in text_of(estimate, tmp_path / f"other{ending}")
+    assert "poorly or not at all" not in text_of(estimate, tmp_path / f"other{ending}")
     # What the identification warns of keeps its error.
     finding = Finding(code="undetermined", parameters=("viscous",), title="one reversal")
     warned = text_of(dataclasses.replace(estimate, findings=(finding,)), tmp_path / f"w{ending}")
-    assert "did not determine these values, or not well: viscous." in warned
+    assert "these values poorly or not at all: viscous." in warned
     assert "19.9932 to 20.0045, not well determined by the recording" in warned
     assert "undetermined (warning): one reversal" in warned
     # A joint file holds no uncertainty at all.
@@ -75,7 +75,7 @@ def test_values_of_several_recordings_are_averaged_and_said_so(tmp_path: Path) -
         name = f"coulomb[{number}]"
         parameters[name] = dataclasses.replace(coulomb, name=name, value=20.0 + 4.0 * number)
     text = text_of(dataclasses.replace(estimate, parameters=parameters), tmp_path / "j.h")
-    assert "mean of 2 recordings, each with its own value: 20 to 24" in text
+    assert "mean of 2 values, one for each recording, from 20 to 24" in text
     assert "_COULOMB ((thesis_joint_real)22.0)" in text
 
 
@@ -93,13 +93,16 @@ def test_values_of_several_recordings_are_averaged_and_said_so(tmp_path: Path) -
         ({"path": "joint.h", "into": "arm.urdf"}, "only mujoco and urdf files"),
         ({"path": "new.urdf", "into": "nothing.urdf"}, "cannot be read: No such file"),
         ({"path": "new.urdf", "into": "arm.urdf", "joint_name": "elbo"}, "did you mean 'elbow'"),
-        ({"path": "new.urdf", "into": "arm.urdf"}, "known are elbow, wrist"),
+        ({"path": "new.urdf", "into": "arm.urdf"}, "choose one of elbow, wrist"),
         ({"path": "new.urdf", "into": "text.urdf", "joint_name": "elbow"}, "not XML"),
         ({"path": "new.urdf", "into": "wide.urdf", "joint_name": "elbow"}, "text in UTF-8"),
         ({"path": "new.urdf", "into": "entity.urdf", "joint_name": "elbow"}, "in entities"),
         ({"path": "new.urdf", "into": "twice.urdf", "joint_name": "elbow"}, "several joints"),
         ({"path": "new.urdf", "into": "empty.urdf", "joint_name": "elbow"}, "no parent and child"),
-        ({"path": "new.xml", "into": "include.xml", "joint_name": "elbow"}, "includes other files"),
+        (
+            {"path": "new.xml", "into": "include.xml", "joint_name": "elbow"},
+            "files that this file includes",
+        ),
         ({"path": "missing/joint.h"}, "does not exist"),
     ],
 )
@@ -149,14 +152,14 @@ def test_a_source_without_values_is_refused(tmp_path: Path) -> None:
 def test_a_model_that_moves_needs_an_inertia_that_can_be(tmp_path: Path) -> None:
     light = {"coulomb": 1.0, "viscous": 1.0}
     bare = jid.Joint(model=jid.Model("coulomb_viscous")).with_parameters(light)
-    with pytest.raises(jid.InputError, match="inertia: has no value"):
+    with pytest.raises(jid.InputError, match="inertia: a model for simulation needs"):
         jid.export(bare, tmp_path / "j.xml")
     jid.export(bare, tmp_path / "j.h")  # friction alone needs none
     contradicting = LOADED.replace(rotor_inertia=None).with_parameters({"inertia": 0.1})
     with pytest.raises(jid.InputError, match="must be at least the link's inertia"):
         jid.export(contradicting, tmp_path / "j.xml")
     thin = LOADED.replace(link=jid.Link(mass=2.5, centre_of_mass=0.5, inertia=0.1))
-    with pytest.raises(jid.InputError, match="which is impossible for a body"):
+    with pytest.raises(jid.InputError, match="cannot be below mass"):
         jid.export(thin, tmp_path / "j.xml")
 
 

@@ -149,9 +149,7 @@ def test_the_matlab_struct_has_them(tmp_path: Path) -> None:
 
 def test_a_controller_is_told_what_it_has_to_add(tmp_path: Path) -> None:
     text = jid.export(led(), tmp_path / "joint.st").read_text(encoding="ascii")
-    assert (
-        "not in this file, and has to be added: the torque of other signals (cable=scaled" in text
-    )
+    assert "this file lacks the torque of other signals (cable=scaled" in text
     # Read from a file, an estimate knows the coefficients alone.
     again = jid.Estimate.from_json(led().to_json())
     text = jid.export(again, tmp_path / "again.st").read_text(encoding="ascii")
@@ -161,5 +159,5 @@ def test_a_controller_is_told_what_it_has_to_add(tmp_path: Path) -> None:
 
 def test_a_term_without_its_centre_is_refused(tmp_path: Path) -> None:
     joint = SWINGING.replace(model=jid.Model("coulomb_viscous", terms={"position": "torque_over"}))
-    with pytest.raises(jid.InputError, match="has no centre"):
+    with pytest.raises(jid.InputError, match="needs the centre"):
         jid.export(joint, tmp_path / "joint.h")

@@ -143,7 +143,7 @@ def driven(path: Path) -> ElmoDrive:
         (
             "duration = 12.0",
             "duration = 1e12",
-            r"\[session.trajectory\]: duration is 1000000000000.0: at most 10000 s is expected",
+            r"\[session.trajectory\]: duration is 1000000000000.0: at most 10000 s \(5000000 cycles\) is expected",
         ),
         (
             "identifier = 0x1C0",
@@ -225,7 +225,7 @@ def test_an_hour_at_a_kilohertz_is_a_session(tmp_path: Path) -> None:
         ({"trajectory": jid.Trajectory.thesis(duration=1e12)}, "^trajectory.duration is 1000000"),
         (
             {"options": SessionOptions(approach_velocity=1e-4)},
-            "^approach_velocity is 0.0001: at least 0.000204 rad/s is expected for the 1.3 rad",
+            "^approach_velocity is 0.0001: at least 0.000204 rad/s is expected, because the start is 1.3 rad",
         ),
     ],
 )
@@ -278,9 +278,13 @@ def test_a_session_takes_its_motion_from_a_file_beside_the_bench(
 @pytest.mark.parametrize(
     ("motion", "more", "wording"),
     [
-        (MOTION, "duration = 3.0", "duration: the file holds the whole motion"),
+        (MOTION, "duration = 3.0", "duration: the motion file already defines the whole motion"),
         ("", "", r"motion\.toml: trajectory: this is missing"),
-        (MOTION.replace("duration = 8.0", "duration = 1e5"), "", "at most 10000 s is expected"),
+        (
+            MOTION.replace("duration = 8.0", "duration = 1e5"),
+            "",
+            "at most 10000 s \\(5000000 cycles\\) is expected",
+        ),
         (
             MOTION + PEAKS.replace("[-0.6, 0.6]", "[-0.6, 1.5]"),
             "",
@@ -308,7 +312,7 @@ def test_a_motion_that_the_session_cannot_take_is_refused_in_one_sentence(
 
 def test_a_motions_file_is_a_name(tmp_path: Path) -> None:
     path = written(tmp_path, OWN, "file = 3\n")
-    with pytest.raises(jid.InputError, match="file is 3: the name of a motion's file is expected"):
+    with pytest.raises(jid.InputError, match="file is 3: the name of a motion file is expected"):
         Bench.load(path)
 
 

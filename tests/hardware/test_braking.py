@@ -66,7 +66,7 @@ def pushed(
 def test_a_fast_approach_ends_inside_the_window(friction: dict[str, float], torque: float) -> None:
     stopped, farthest, rests, elmo = pushed(friction, torque)
     assert stopped.stop.limit == "position"
-    assert "if it were braked now" in stopped.stop.message
+    assert "even immediate braking would stop" in stopped.stop.message
     assert stopped.recording is not None
     braked = stopped.recording.metadata["braked"]
     if torque > 60.0:

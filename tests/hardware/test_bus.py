@@ -146,7 +146,9 @@ def test_a_network_without_can_fd_is_refused(
     (tmp_path / "can0" / "mtu").write_text("16\n")
     monkeypatch.setattr(bus_module, "_NETWORKS", tmp_path)
     rates = {"fd": True, "bitrate": 1_000_000, "data_bitrate": 5_000_000}
-    with pytest.raises(InputError, match=r"no frames of CAN FD; .*`sudo ip link set can0 mtu 72`"):
+    with pytest.raises(
+        InputError, match=r"CAN FD is not enabled on this network; .*`sudo ip link set can0 mtu 72`"
+    ):
         open_bus(**rates).__enter__()  # type: ignore[arg-type]
     (tmp_path / "can0" / "device").mkdir()
     up = "can0 down && sudo ip link set can0 up type can bitrate 1000000 dbitrate 5000000 fd on`"
@@ -184,7 +186,7 @@ def test_without_msgpack_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch
     [
         (
             {"interface": "emulated"},
-            "interface is 'emulated': python-can has no such interface: an emulated bench is an EmulatedBus",
+            "interface is 'emulated': python-can has no such interface; for an emulated bench use an EmulatedBus",
         ),
         (
             {"interface": "sockercan"},
@@ -192,11 +194,11 @@ def test_without_msgpack_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch
         ),
         (
             {"interface": "virtual", "data_bitrate": 5_000_000},
-            "data_bitrate is 5000000: classic CAN has no .*; fd = true opens the bus for CAN FD",
+            "data_bitrate is 5000000: classic CAN \\(fd = false\\) has no .*; state fd = true for CAN FD",
         ),
         (
             {"interface": "virtual", "fd": True, "data_bitrate": 250_000},
-            "data_bitrate is 250000: a value from bitrate, 500000, to 8000000 bit/s is expected",
+            "data_bitrate is 250000: a value from 500000 \\(bitrate\\) to 8000000 bit/s is expected",
         ),
         ({"interface": "virtual", "channel": ""}, "channel is '': missing"),
         ({"interface": "virtual", "channel": None}, "channel is None: missing"),
@@ -239,7 +241,7 @@ def test_a_network_that_is_not_there_or_down_is_refused(
             "the kernel has no CAN",
         ),
         (OSError(19, "No such device"), "there is no such channel"),
-        (PermissionError(13, "Permission denied"), "not permitted"),
+        (PermissionError(13, "Permission denied"), "access denied"),
         (can.CanInitializationError("no adapter\nfound"), "it cannot be opened: no adapter found"),
     ],
 )

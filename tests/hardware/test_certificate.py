@@ -216,7 +216,7 @@ def test_one_from_before_the_watchdog_was_known_is_void(bench: Bench, tmp_path: 
     read = Certificate.load(path)
     assert read.objections(bench, IDENTITY, NOW) == []
     (objection,) = read.objections(bench, IDENTITY, NOW, watchdog=WATCHDOG)
-    assert objection == "the certificate lacks what [watchdog] states"
+    assert objection == "the certificate has no table [watchdog], but the bench states these facts"
 
 
 def test_no_certificate_without_a_watchdog_that_is_known(bench: Bench) -> None:
@@ -224,7 +224,7 @@ def test_no_certificate_without_a_watchdog_that_is_known(bench: Bench) -> None:
     with pytest.raises(InputError, match="the drive declares no watchdog"):
         Certificate.of(bench, passed, NOW)
     unread = replace(passed, drive_watchdog=replace(WATCHDOG, read_back=False))
-    with pytest.raises(InputError, match="test it with --watchdog"):
+    with pytest.raises(InputError, match="use --watchdog"):
         Certificate.of(bench, unread, NOW)
     seen = Certificate.of(bench, replace(unread, watchdog=0.0505), NOW)
     assert seen.watchdog["read_back"] is False

@@ -76,8 +76,8 @@ def test_what_is_not_as_a_session_needs_it_is_named() -> None:
     elmo.failure = 0x4
     report = drive.report()
     assert [each.name for each in report.differences] == ["6075h", "6007h"]
-    assert str(report.differences[0]).endswith("share of: 4000 mA; expected: 8000 mA")
-    assert report.trouble == "the drive has shut its motor down before: feedback lost"
+    assert str(report.differences[0]).endswith("torque 6077h: 4000 mA; expected: 8000 mA")
+    assert report.trouble == "the drive has shut its motor down earlier: feedback lost"
 
 
 def test_a_joint_that_moves_shows() -> None:
@@ -149,10 +149,13 @@ def test_an_expedited_object() -> None:
     [
         ((b"\x41" + struct.pack("<HBI", 0x1008, 0, 4),), "object 100Ah:0 is answered by"),
         ((b"\x60" + HEAD + bytes(4),), "is answered by 60"),
-        ((b"\x41" + HEAD + bytes(4), b"\x10" + bytes(7)), "begins with 10"),
-        ((b"\x41" + HEAD + bytes(4), b"\x60" + bytes(7)), "begins with 60"),
-        ((b"\x41" + HEAD + bytes(4), b"\x01\0"), "of 2 bytes"),
-        ((b"\x41" + HEAD + bytes(4), *300 * (bytes(8), b"\x10" + bytes(7))), "does not end"),
+        ((b"\x41" + HEAD + bytes(4), b"\x10" + bytes(7)), "begins with an invalid byte, 10"),
+        ((b"\x41" + HEAD + bytes(4), b"\x60" + bytes(7)), "begins with an invalid byte, 60"),
+        ((b"\x41" + HEAD + bytes(4), b"\x01\0"), "has 2 bytes"),
+        (
+            (b"\x41" + HEAD + bytes(4), *300 * (bytes(8), b"\x10" + bytes(7))),
+            "the last segment of object",
+        ),
     ],
 )
 def test_answers_that_are_none_to_it(answers: tuple[bytes, ...], says: str) -> None:

@@ -108,7 +108,7 @@ def test_an_installed_type_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         (
             (("wheel", "math:pi"),),
             "wheel",
-            "math:pi of an unknown package is not a DriveType but a float",
+            "math:pi of an unknown package is a float, not a DriveType",
         ),
         ((), ["elmo"], "drive type is ['elmo']: a text is expected"),
         ((("wheel", "a:X"), ("wheel", "b:X")), "wheel", "by several packages: a:X, b:X"),
@@ -129,7 +129,9 @@ def test_a_type_without_a_decoder_is_refused_by_replay(
 ) -> None:
     installed(monkeypatch, ("wheel", f"{__name__}:Wheel"))
     (tmp_path / "run.log").write_text("")
-    with pytest.raises(jid.InputError, match=r"run\.log: drive is 'Wheel': this type of drive dec"):
+    with pytest.raises(
+        jid.InputError, match=r"run\.log: drive is 'Wheel': this type of drive cannot dec"
+    ):
         jid.hardware.replay(tmp_path / "run.log", jid.Joint(name="any"), drive="wheel", period=0.1)
 
 
@@ -176,7 +178,9 @@ def test_a_package_that_registers_a_built_in_name_is_refused(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package(tmp_path / "site", monkeypatch, f"elmo = {__name__}:Wheel")
-    wording = "registered by the package wheel-drive, but built in; rename it"
+    wording = (
+        "the package wheel-drive registers this name, but jointid has a built-in type of this name"
+    )
     with pytest.raises(jid.InputError, match=wording):
         drive_type("elmo")
     with pytest.raises(jid.InputError, match=wording):
@@ -214,7 +218,7 @@ def test_the_address_of_a_drive_is_shown_before_a_joint_moves(
     assert main(["run", str(path), "--force"]) == 3
     asked = capsys.readouterr().err
     assert "will move between -1.4 and 1.4 rad with up to 160 N·m, about " in asked
-    assert "over virtual can0, node 127." in asked
+    assert "(virtual can0, node 127)" in asked
 
 
 def test_hardware_loads_no_make_of_drive() -> None:

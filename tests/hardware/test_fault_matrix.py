@@ -131,7 +131,7 @@ def test_a_run_whose_motor_was_not_seen_off_is_no_success() -> None:
 
     bench.observer = watch
     with pytest.raises(
-        SessionStoppedError, match="the run is done, but the motor is not off"
+        SessionStoppedError, match="the run has ended, but the motor is not off"
     ) as found:
         bench.session().run()
     assert (found.value.stop.limit, found.value.stop.motor_off) == ("drive_fault", False)

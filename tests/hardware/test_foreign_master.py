@@ -114,7 +114,7 @@ def test_a_heartbeat_that_keeps_the_drive_on_after_our_death_stops_the_session_b
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        ({"master": 127}, "master is 127: 1 to 127 is expected, not 127"),
+        ({"master": 127}, "master is 127: 1 to 127 is expected, other than the drive's node 127"),
         ({"master": 0}, "master is 0"),
         ({"master": 128}, "master is 128"),
         ({"listen": -1.0}, "listen is -1"),

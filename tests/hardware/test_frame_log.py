@@ -23,14 +23,14 @@ _SOUND = "(1700000000.000000) can0 080#\n"
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        ("(nan) can0 181#00\n", "frame 2 has a stamp that is not a number"),
-        ("(inf) can0 181#00\n", "frame 2 has a stamp that is not a number"),
-        ("(1e400) can0 181#00\n", "frame 2 has a stamp that is not a number"),
+        ("(nan) can0 181#00\n", "frame 2 has a time stamp that is not a finite number"),
+        ("(inf) can0 181#00\n", "frame 2 has a time stamp that is not a finite number"),
+        ("(1e400) can0 181#00\n", "frame 2 has a time stamp that is not a finite number"),
         ("(1.0) can0 801#00\n", "frame 2 has the identifier 801h, above 7FFh"),
         ("(1.0) can0 FFF#00\n", "frame 2 has the identifier FFFh"),
         (f"(1.0) can0 181#{'00' * 65}\n", "frame 2 has 65 bytes, more than 64"),
-        ("(1.0) can0\n", "the data after frame 1 are not a frame"),
-        ("(1.0) can0 zzz#00\n", "the data after frame 1 are not a frame"),
+        ("(1.0) can0\n", "the data after frame 1 do not form a frame"),
+        ("(1.0) can0 zzz#00\n", "the data after frame 1 do not form a frame"),
     ],
 )
 def test_a_frame_that_no_bus_carries(line: str, reason: str, tmp_path: Path) -> None:
@@ -165,5 +165,5 @@ def test_containers_of_every_length_hold_the_same_frames(
 def test_a_part_that_is_packed_in_another_way_is_not_left_out(tmp_path: Path) -> None:
     path = tmp_path / "run.blf"
     path.write_bytes(seed_of("blf")[1][:144] + _container(bytes(64), method=7))
-    with pytest.raises(jid.InputError, match=r"^a part is packed by the method 7"):
+    with pytest.raises(jid.InputError, match=r"^a part has the compression method 7"):
         list(logged_frames(path))

@@ -185,7 +185,7 @@ def test_a_live_plot_of_a_session_ends_as_a_picture(tmp_path: Path) -> None:
     ("wrong", "wording"),
     [
         ({"span": 0.0}, "span is 0.0: more than 0 s is expected"),
-        ({"window": False}, "neither a window nor a picture"),
+        ({"window": False}, "without a window or a picture"),
     ],
 )
 def test_a_plot_of_nothing_is_refused(wrong: dict[str, Any], wording: str) -> None:

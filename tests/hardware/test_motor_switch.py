@@ -144,7 +144,7 @@ def test_echoes_in_order_late_lost_and_twice() -> None:
     assert echoes.lost == 1
     assert echoes.came(1.0) == ""  # a frame that came twice
     assert echoes.came(2.0 + 1e-7) == ""
-    assert "TC = 5 A, sent was 3 A" in echoes.came(5.0)
+    assert "TC = 5 A, but 3 A was sent" in echoes.came(5.0)
     echoes.check()
     for _ in range(4):
         echoes.sent(4.0)
@@ -249,7 +249,7 @@ def test_a_late_answer_leaves_no_negative_time() -> None:
         assert 0.1 * PERIOD < found.value.allowed < 0.51 * PERIOD
         drive.command(0.0)
     assert not [text for text in said if " -" in text or "−" in text]
-    assert any("is left for the next" in text for text in said)
+    assert any("is left to wait for the next" in text for text in said)
 
 
 def test_a_changed_echo_stops_a_session_and_says_by_how_much() -> None:
@@ -263,7 +263,7 @@ def test_a_changed_echo_stops_a_session_and_says_by_how_much() -> None:
         reply(payload)
 
     elmo.reply = changed  # type: ignore[method-assign]
-    with pytest.raises(SessionStoppedError, match=r"acknowledges TC = 7.25 A, sent was") as found:
+    with pytest.raises(SessionStoppedError, match=r"acknowledges TC = 7.25 A, but") as found:
         session(bus).run()
     assert found.value.stop.limit == "command_echo"
     assert not elmo.motor_on

@@ -107,7 +107,7 @@ def test_elsewhere_than_on_linux_it_says_so(monkeypatch: pytest.MonkeyPatch) -> 
     options = RealTimeOptions(priority=10, lock_memory=True, cpus=(0,), timer_slack=1e-6)
     with RealTime(options) as asked:
         assert asked.notes == [
-            f"{name}: only on Linux, this is win32"
+            f"{name}: available only on Linux, but this system is win32"
             for name in ("priority", "lock_memory", "cpus", "timer_slack")
         ]
 

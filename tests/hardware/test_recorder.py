@@ -229,9 +229,9 @@ def full() -> Iterator[int]:
     ("name", "there", "said"),
     [
         ("run.txt", None, "a session writes .csv"),
-        ("none/run.csv", None, "its folder does not exist"),
-        ("run.csv", "run.csv", "a session overwrites nothing"),
-        ("run.csv", "run.log", "a session overwrites nothing"),
+        ("none/run.csv", None, "the folder of this file does not exist"),
+        ("run.csv", "run.csv", "a session does not overwrite files"),
+        ("run.csv", "run.log", "a session does not overwrite files"),
     ],
 )
 def test_a_name_that_cannot_be_used_is_refused(
@@ -322,7 +322,8 @@ def test_a_session_that_never_ran_says_so(tmp_path: Path) -> None:
     content = path.read_bytes()
     path.write_bytes(content[: content.rfind(b"# jointid session")])
     with pytest.raises(
-        jid.InputError, match=r"before its first sample; it was killed, or the power failed$"
+        jid.InputError,
+        match=r"before its first sample; the program was killed, or the power failed$",
     ):
         jid.load(path)
 

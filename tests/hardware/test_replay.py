@@ -164,7 +164,7 @@ def test_a_log_of_another_session_is_refused(
     other = recording.with_signals(position=position)
     with pytest.raises(
         jid.InputError,
-        match=r"row 40 of the recording has the position .* rad, but the frames have .*; cycles_before=\d+ takes",
+        match=r"row 40 has the position .* rad, but the frames .*; state cycles_before=\d+ to use",
     ):
         jid.hardware.replay(log, JOINT, recording=other)
     again = jid.hardware.replay(
@@ -293,7 +293,7 @@ def test_missing_cycles_are_counted(
     lacking.write_text("".join(lines[: ends[300] + 1] + lines[ends[303] + 1 :]))
     rows = len(recording.time)
     with pytest.raises(
-        jid.InputError, match=f"{rows - 3} cycles of the run, the recording has {rows}; frames are"
+        jid.InputError, match=f"{rows - 3} cycles of the run, but the recording has {rows}; frames"
     ):
         jid.hardware.replay(lacking, JOINT, recording=recording)
 
@@ -301,13 +301,17 @@ def test_missing_cycles_are_counted(
 @pytest.mark.parametrize(
     ("name", "content", "sentence"),
     [
-        ("run.txt", "", r"run\.txt: .*a frame log ends in \.log, \.asc, \.blf"),
+        ("run.txt", "", r"run\.txt: .*a frame log must end in \.log, \.asc, \.blf"),
         (
             "run.log",
             "(1.0) can0 080# T\nnonsense\n",
-            r"run\.log: the data after frame 1 are not a frame",
+            r"run\.log: the data after frame 1 do not form a frame",
         ),
-        ("run.log", "", r"run\.log: 0 cycles after the first 0; at least 8 are expected"),
+        (
+            "run.log",
+            "",
+            r"run\.log: the log has 0 cycles after the first 0; at least 8 are expected",
+        ),
         ("run.asc", None, r"run\.asc: there is no such file"),
     ],
 )

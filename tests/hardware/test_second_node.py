@@ -51,7 +51,7 @@ def test_two_nodes_of_one_number_are_named(second: Callable[[], Device], seen: s
     first = devices(seed=1)
     with (
         EmulatedBus(*first, second()) as bus,
-        pytest.raises(SessionRefusedError, match=f"two nodes answer as {NODE}: {seen}"),
+        pytest.raises(SessionRefusedError, match=f"two drives answer as node {NODE}: {seen}"),
     ):
         session(bus).run()
     assert not first[0].motor_on

@@ -160,7 +160,7 @@ def test_a_bug_in_disable_that_stays_says_that_the_motor_was_not_seen_off(
     before(monkeypatch, bench.drive, "disable", fails)
     with pytest.raises(TypeError) as found:
         bench.run()
-    assert "THE MOTOR WAS NOT SEEN OFF" in found.value.__notes__[0]
+    assert "THE DRIVE DID NOT CONFIRM THAT THE MOTOR IS OFF" in found.value.__notes__[0]
 
 
 def test_a_bug_in_a_dry_run_is_raised(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

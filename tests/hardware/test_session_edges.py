@@ -196,7 +196,9 @@ def test_what_cannot_be_held_is_refused() -> None:
     weak = JOINT.replace(limits=jid.Limits(torque=160.0, current=2.0))
     drive = ElmoDrive(EmulatedBus(*devices()), weak)
     given = SessionLimits.of(weak, torque=160.0)
-    with pytest.raises(SessionRefusedError, match=r"PL\[1\] is 8 A, the session allows 2 A"):
+    with pytest.raises(
+        SessionRefusedError, match=r"PL\[1\] is 8 A, but the session allows only 2 A"
+    ):
         Session(drive, law(), motion(), given).run()
     slow = SessionOptions(period=0.05)
     with pytest.raises(SessionRefusedError, match="is too long: each cycle sends the heartbeat"):
@@ -271,7 +273,9 @@ class StubbornDrive(ElmoDrive):
 def test_a_motor_that_does_not_go_off_after_a_run_is_no_success() -> None:
     bus = EmulatedBus(*devices())
     options = SessionOptions(period=PERIOD, settle=0.05)
-    with pytest.raises(SessionStoppedError, match=r"relay stuck.*THE MOTOR WAS NOT SEEN OFF") as f:
+    with pytest.raises(
+        SessionStoppedError, match=r"relay stuck.*THE DRIVE DID NOT CONFIRM THAT THE MOTOR IS OFF"
+    ) as f:
         Session(StubbornDrive(bus, JOINT), law(), motion(), limits(), options=options).run()
     assert f.value.stop.motor_off is False
     assert f.value.recording is not None
@@ -294,7 +298,7 @@ def test_without_a_sensor_there_is_no_column_of_it(tmp_path: Path) -> None:
     ("name", "returned", "wording"),
     [
         ("problems", "not homed", r"problems\(\) is 'not homed': a list of sentences"),
-        ("command", None, r"command\(\) returned None; the torque that it accepted"),
+        ("command", None, r"command\(\) returned None; the accepted torque"),
     ],
 )
 def test_a_wrong_return_value_of_a_drive_is_reported(

@@ -90,7 +90,7 @@ def test_drive_that_raises_while_switching_off_is_closed_all_the_same() -> None:
 
     bench.observer = watch
     with pytest.raises(
-        SessionStoppedError, match=r"enough.*it went away; THE MOTOR WAS NOT"
+        SessionStoppedError, match=r"enough.*it went away; THE DRIVE DID NOT CONFIRM"
     ) as found:
         bench.session().run()
     assert closed == [None]

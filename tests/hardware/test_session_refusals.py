@@ -79,14 +79,14 @@ CASES: dict[str, tuple[Prepare, str]] = {
     "trajectory too fast": (limited(velocity=1.0), "rad/s, more than 1 rad/s"),
     "too fast at the edge": (
         fast_at_the_edge,
-        r"too fast near the edge of the window: .* would stop at .* outside -0\.5000 to 0\.5000 rad",
+        r"too fast near the edge of the window: .* would stop the joint only at .* outside -0\.5000 to 0\.5000 rad",
     ),
     "torque beyond": (open_loop, "needs 170 N·m, more than 160 N·m"),
-    "peak current": (strong, r"PL\[1\] is 9 A, the session allows 8 A"),
+    "peak current": (strong, r"PL\[1\] is 9 A, but the session allows only 8 A"),
     "unit mode": (with_elmo(fixed_unit_mode=5), "is in unit mode 5, not in torque mode"),
     "failure latched": (
         with_elmo(failure=0x4),
-        r"down before \(feedback lost\).*acknowledge = true under \[session.drive\].*remove it",
+        r"down earlier \(feedback lost\).*acknowledge = true under \[session.drive\].*delete this line",
     ),
     "power stage": (with_elmo(problem=6), "reports over-temperature"),
     "sensor at its end": (railed, "sensor is at the end of its range"),
@@ -95,7 +95,7 @@ CASES: dict[str, tuple[Prepare, str]] = {
 WIRES = {
     "nobody there": (
         BusFault(kind="drop", start=0.0),
-        "no boot-up message from node 127 within 2000 ms; check that the drive is on, and that this is",
+        "no boot-up message from node 127 within 2000 ms; check that the drive is on, and that its node",
     ),
     "no answers": (BusFault(kind="drop", start=0.0, identifier=0x5FF), "no answer to object 1018h"),
     "no replies": (BusFault(kind="drop", start=0.0, identifier=0x2FF), "no reply to SR"),
@@ -135,7 +135,7 @@ def test_full_bus_is_refused_before_it_is_touched() -> None:
         *(bench.drive, bench.law, bench.trajectory, bench.limits),
         options=SessionOptions(period=1e-3),
     )
-    with pytest.raises(SessionRefusedError, match=r"takes 1\d\d % of the bus, more than 80 %"):
+    with pytest.raises(SessionRefusedError, match=r"the bus load is 1\d\d %, more than 80 %"):
         session.run()
     assert bench.bus.tried == []
 
@@ -146,7 +146,7 @@ def test_motor_that_another_has_switched_on_is_left_alone(state: str) -> None:
     bench.elmo.state, bench.elmo.unit_mode = state, 1
     bench.elmo.switch(on=True)
     bench.elmo.current = 1.5
-    with pytest.raises(SessionRefusedError, match="the motor is on already"):
+    with pytest.raises(SessionRefusedError, match="the motor is already on"):
         bench.session().run()
     assert bench.elmo.motor_on
     assert bench.elmo.current == 1.5

@@ -130,7 +130,7 @@ def test_what_it_does_not_emulate_is_said(installed: Path, tmp_path: Path) -> No
     path.write_text(JOINT, encoding="utf-8")
     bench = jid.hardware.Bench.load(path)
     assert "/dev/ttyACM0" in bench.address
-    with pytest.raises(jid.InputError, match="cannot be emulated on a CAN bus"):
+    with pytest.raises(jid.InputError, match="cannot emulate this type of drive on a CAN bus"):
         jid.hardware.emulated_devices(bench)
     path.write_text(
         JOINT.replace(

@@ -208,7 +208,7 @@ ARMING: tuple[tuple[Any, str, tuple[str, ...]], ...] = (
     (setup, "arm_watchdogs", ()),
     (setup, "watchdog_objects", ()),
     (MotorSwitch, "beat", ()),
-    (MotorSwitch, "on", ("seen_off", "echoes", "does not come on", "> end", "sleep_until")),
+    (MotorSwitch, "on", ("seen_off", "echoes", "does not switch on", "> end", "sleep_until")),
     (MotorSwitch, "_beat_in_time", ()),
     (ElmoDrive, "command", ("echoes", "return")),
     (ElmoDrive, "enable", ()),

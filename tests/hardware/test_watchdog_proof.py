@@ -68,7 +68,7 @@ def test_a_right_bench_passes_and_says_when(period: float) -> None:
     assert AWAITED < result.watchdog < AWAITED + 2e-3
     assert "watchdog" not in result.unchecked
     assert "emergency_stop" in result.unchecked
-    assert "watchdog: motor off by itself 5" in result.report()
+    assert "watchdog: the motor was off 5" in result.report()
     assert Certificate.of(bench, result).found["watchdog"] == result.watchdog
     assert "watchdog" not in result.to_dict()
 
@@ -211,7 +211,7 @@ def test_a_drive_must_do_what_it_declares(
         )
     assert result.reason == reason
     assert result.drive_watchdog == declared
-    said = "motor damped by itself 50.5 ms" if reason is None else "the motor is held after 100 ms"
+    said = "the motor was damped 50.5 ms" if reason is None else "the motor is held after 100 ms"
     assert said in result.report()
 
 

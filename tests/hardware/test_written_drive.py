@@ -283,8 +283,8 @@ def test_a_missing_method_is_reported_before_anything_is_called(name: str) -> No
     with pytest.raises(InputError) as refused:
         Session(wheel, LAW, SWING, LIMITS, options=OPTIONS)
     assert str(refused.value) == (
-        f"drive is an Incomplete: a drive is expected, but this has no {name}(); "
-        "see `jointid.hardware.Drive` for what a session needs of a drive"
+        f"drive is an Incomplete: a drive is expected, but this object has no {name}(); "
+        "see `jointid.hardware.Drive` for the methods that a session needs"
     )
     assert wheel.calls == []
 

@@ -50,7 +50,7 @@ def test_a_bound_holds_and_gives_percentiles() -> None:
 
 def test_without_recordings_it_says_so(estimate: jid.Estimate) -> None:
     read = jid.Estimate.from_json(estimate.to_json())
-    with pytest.raises(jid.InputError, match="does not hold the recordings; identify again"):
+    with pytest.raises(jid.InputError, match="does not contain the recordings; identify again"):
         read.bootstrap()
     with pytest.raises(jid.InputError, match="n is 3"):
         estimate.bootstrap(3)

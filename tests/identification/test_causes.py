@@ -300,7 +300,9 @@ def test_a_delay_has_a_side_and_is_no_cause_where_the_signal_excludes_it(
 
 
 def test_signals_have_names(estimates: dict[str, jid.Estimate]) -> None:
-    with pytest.raises(jid.InputError, match="signals is 'int': signals by name are expected"):
+    with pytest.raises(
+        jid.InputError, match="signals is 'int': a mapping from names to signals is expected"
+    ):
         estimates["clean"].causes(5)  # type: ignore[arg-type]
 
 

@@ -109,7 +109,7 @@ def test_a_wrong_inertia_is_told_with_what_it_did_to_the_friction(recording: jid
     )
     cause = next(each for each in wrong.causes().found if each.name == "wrong_scale")
     text = str(cause)
-    shown = re.search(r"with the inertia of (\S+) kg·m² that the torque shows instead", text)
+    shown = re.search(r"with the inertia that fits the torque \((\S+) kg·m²\)", text)
     assert shown is not None
     assert float(shown[1]) == pytest.approx(free["inertia"].value, rel=5e-3)
     moved = re.search(r"coulomb (?:changes )?by ([+−])(\S+) %", text)

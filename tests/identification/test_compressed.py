@@ -174,5 +174,5 @@ def test_the_direct_sum_verifies_the_result(excited: jid.Recording) -> None:
     assert verified.balance[0] == penalty(best)
     wrong = Engine(direct=other, form=engine.form, reason="")
     polished = wrong.verified(outcome, domain)
-    assert "did not agree" in polished.message
+    assert "gave another penalty" in polished.message
     assert other(polished.best) <= other(best)

@@ -37,10 +37,10 @@ def test_every_shape_of_the_core_has_bounds() -> None:
         (
             {"static_positive": 1.0},
             "static_positive",
-            "it is not part of this identification; its",
+            "this identification has no such parameter; its",
             None,
         ),
-        ({"coulomb": {"min": 2.0, "max": 2.0}}, "coulomb", "between min 2 and max 2", "widen"),
+        ({"coulomb": {"min": 2.0, "max": 2.0}}, "coulomb", "min 2 is not below its max 2", "widen"),
         ({"coulomb": {"min": 2.0, "max": 1.0}}, "min", "above max", "swap"),
     ],
 )
@@ -88,7 +88,7 @@ def test_signals_without_information() -> None:
     constant = jid.Recording(**MOTION, torque=np.cos(7.0 * TIME), sensor=np.ones(TIME.size))
     error = refused(constant)
     assert (error.argument, error.place) == ("sensor", "recording")
-    assert "does not vary" in error.reason
+    assert "never changes" in error.reason
 
 
 def test_a_gain_of_zero(repo: Path) -> None:

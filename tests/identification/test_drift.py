@@ -86,7 +86,7 @@ def test_drifts_alone_tell_whether_one_may_be_taken_away(found: list[jid.Estimat
 def test_what_is_asked_later_knows_of_the_drift(found: list[jid.Estimate]) -> None:
     estimate = found[0]
     assert [each.name for each in estimate.causes().found] == ["drift"]
-    assert "for the middle of the recording" in estimate.causes().found[0].effect
+    assert "the values are valid in mid-recording" in estimate.causes().found[0].effect
     gain = estimate.bootstrap(n=50).parameters["sensor_gain"]
     assert gain.interval[0] == pytest.approx(2.4, rel=0.01)
     assert pickle.loads(pickle.dumps(estimate)).findings == estimate.findings

@@ -96,7 +96,7 @@ def test_choices_are_words(field: str) -> None:
         assert pickle.loads(pickle.dumps(options)) == options
         assert eval(repr(options), {"GaOptions": jid.GaOptions}) == options
     known = ", ".join(CHOICES[field])
-    expected = f"GaOptions.{field} is 'fancy': known are {known}"
+    expected = f"GaOptions.{field} is 'fancy': choose one of {known}"
     with pytest.raises(ValueError, match=expected):
         with_choice(field, "fancy")
     with pytest.raises(jid.InputError, match=f"GaOptions.{field} is 3: it is of the wrong type"):

@@ -83,7 +83,7 @@ def test_what_projection_cannot_tell_is_compressed_and_said(
 def test_without_a_shape_it_is_least_squares(well_excited: jid.Recording) -> None:
     fixed = {"stribeck": 100.0}
     estimate = jid.identify(well_excited, jid.thesis_joint(), parameters=fixed)
-    assert estimate.message == "least squares, because no shape is searched"
+    assert estimate.message == "linear least squares, because the model has no free shape parameter"
     genetic = jid.identify(well_excited, jid.thesis_joint(), parameters=fixed, search="ga")
     assert estimate.penalty <= genetic.penalty * (1.0 + 1e-12)
 

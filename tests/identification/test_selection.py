@@ -54,7 +54,9 @@ def test_a_strain_wave_joint_is_found_by_the_plainest_call(home: jid.Estimate) -
     assert home.selection.model == home.settings["model"] == home.joint.model.name == "stribeck"
     assert home.parameters["sensor_gain"].value == pytest.approx(2.4, rel=0.01)
     (line,) = [each for each in home.report(verbose=True).splitlines() if each.startswith("chosen")]
-    wanted = r"stribeck misses 0\.2\d+ % of the held-out torque, coulomb_viscous 4\.11 %"
+    wanted = (
+        r"stribeck has a residual of 0\.2\d+ % of the held-out torque, coulomb_viscous has 4\.11 %"
+    )
     assert re.search(wanted, line)
     assert line.split(maxsplit=1)[1] in home._repr_html_()
 
@@ -172,7 +174,7 @@ def test_what_needs_one_model_for_all_refuses_auto() -> None:
         jid.compare_models(recording(), models=("auto", "stribeck"))
     with pytest.raises(jid.InputError, match="name the model"):
         jid.OnlineIdentifier(model="auto", window=2.0)
-    with pytest.raises(jid.InputError, match="name the model here"):
+    with pytest.raises(jid.InputError, match="only identify can choose"):
         jid.sweep(recording(), grid={"model": ["auto"]}, trials=1)
 
 

@@ -90,7 +90,9 @@ def test_a_joint_that_hardly_moves_is_named_and_nothing_else() -> None:
 
 
 def test_a_joint_that_hardly_moves_and_shows_nothing_is_refused_for_that() -> None:
-    with pytest.raises(jid.InputError, match=r"hardly moves: 0\.0018 rad, 6 encoder counts"):
+    with pytest.raises(
+        jid.InputError, match=r"hardly moves: only by 0\.0018 rad, 6 encoder counts"
+    ):
         jid.identify(hardly_moving(2.0, 3e-4))
 
 

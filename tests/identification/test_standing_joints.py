@@ -49,7 +49,7 @@ def test_a_velocity_of_another_unit_is_no_standstill() -> None:
     run = recorded()
     wrong = changed(run, velocity=900.0 * np.asarray(run.velocity))
     with pytest.raises(
-        jid.InputError, match=r"velocity: the position moves by 0\.001111 times"
+        jid.InputError, match=r"velocity: the change of position is 0\.001111 times"
     ) as error:
         jid.identify(wrong)
     assert "side={'velocity': 'motor'}, gear_ratio=900.0" in str(error.value)

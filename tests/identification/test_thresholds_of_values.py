@@ -126,7 +126,7 @@ def test_a_sentence_names_a_few() -> None:
     assert "and 2 others: " in said.title
     assert "also coulomb[2] ± 6.1 %" in said.details
     (other,) = found("structured_residual", _moved(*many, causes=Causes(found=())))
-    assert "coulomb[2] and 4 others (r = " in other.title
+    assert other.title.endswith("coulomb[2] and 4 others")
     assert "coulomb[3]" not in other.message
 
 
@@ -253,7 +253,9 @@ def test_hardly_more_windows_than_parameters(windows: int, few: bool) -> None:
     assert (lack is not None) == few
 
 
-@pytest.mark.parametrize(("times", "said"), [(3.1, "about 96 s of motion"), (3.2, "times as much")])
+@pytest.mark.parametrize(
+    ("times", "said"), [(3.1, "about 96 s are needed"), (3.2, "times this duration")]
+)
 def test_nobody_records_ten_times_as_long(times: float, said: str) -> None:
     lack = Excitation(_moved()).longer("viscous", times, 1.0)
     assert said in lack.text

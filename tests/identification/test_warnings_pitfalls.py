@@ -45,7 +45,7 @@ def test_a_sensor_that_is_dead_is_refused() -> None:
     dead = jid.Recording(
         time=well.time, position=well.position, torque=well.torque, sensor=np.full(len(well), 3.0)
     )
-    with pytest.raises(jid.InputError, match="does not vary"):
+    with pytest.raises(jid.InputError, match="the reading never changes"):
         jid.identify(dead)
 
 

@@ -89,7 +89,7 @@ def test_a_longer_recording_is_asked_for_by_the_parameter() -> None:
     table = SimpleNamespace(duration=SimpleNamespace(sum=lambda: 6.0))
     lack = Excitation(evidence(table=table)).longer("viscous", 10.0, 0.1)
     assert "hides viscous" in lack.text
-    assert "viscous shows more" in lack.motion
+    assert "viscous has more effect" in lack.motion
 
 
 def test_a_finding_is_no_surer_of_another_joint_than_the_text() -> None:
@@ -105,7 +105,7 @@ def test_a_finding_is_no_surer_of_another_joint_than_the_text() -> None:
         code="structured_residual",
         severity="warning",
         title="it misses",
-        details="none of 9 known causes explains it",
+        details="none of 9 known causes explains the residual",
     )
     share = Share(joint="1", by="acceleration", share=0.95, scale=0.1, own_too=True)
     estimate: Any = Some((found,))

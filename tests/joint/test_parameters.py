@@ -59,7 +59,7 @@ def test_bounds_belong_to_the_range() -> None:
     ("fields", "said"),
     [
         ({"name": "coulom"}, "coulom: there is no such parameter; did you mean 'coulomb'?"),
-        ({"name": "zzz"}, "zzz: there is no such parameter; known are inertia, coulomb"),
+        ({"name": "zzz"}, "zzz: there is no such parameter; choose one of inertia, coulomb"),
         ({"value": float("nan")}, "value is nan: a finite number"),
         ({"min": float("-inf")}, "min is -inf: a finite number"),
         ({"max": 10**400}, "max is inf: a finite number"),
@@ -71,7 +71,7 @@ def test_bounds_belong_to_the_range() -> None:
         ({"value": 3.0, "max": 2.0}, "value is 3.0: it is above max 2.0"),
         ({"name": "stribeck_velocity", "value": -1.0}, "value is -1.0: more than 0"),
         ({"name": "stribeck_exponent[1]", "min": 0.0}, "min is 0.0: more than 0"),
-        ({"vary": False}, "vary is False: there is no value"),
+        ({"vary": False}, "vary is False: a fixed parameter needs a value"),
         ({"value": 1.0, "vary": 0}, "vary is 0: true or false"),
         ({"vary": None}, "vary is None: true or false"),
     ],
@@ -176,7 +176,7 @@ def test_a_fixed_parameter_is_freed() -> None:
     [
         (12.0, "value is 12.0: it is above max 9.0"),
         ({"min": 6.0}, "value is 5.0: it is below min 6.0"),
-        ({"value": None, "vary": False}, "vary is False: there is no value"),
+        ({"value": None, "vary": False}, "vary is False: a fixed parameter needs a value"),
     ],
 )
 def test_a_change_that_does_not_fit(change: Any, said: str) -> None:
@@ -187,5 +187,5 @@ def test_a_change_that_does_not_fit(change: Any, said: str) -> None:
 
 def test_a_suggestion_lists_ten_names() -> None:
     names = [f"x{number}" for number in range(30)]
-    assert suggestion("qqq", names) == f"known are {', '.join(names[:10])}, … (30 in all)"
-    assert suggestion("qqq", names[:10]) == f"known are {', '.join(names[:10])}"
+    assert suggestion("qqq", names) == f"choose one of {', '.join(names[:10])}, … (30 in all)"
+    assert suggestion("qqq", names[:10]) == f"choose one of {', '.join(names[:10])}"

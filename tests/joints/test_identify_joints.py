@@ -296,4 +296,4 @@ def test_a_log_of_wanted_positions_names_the_way_by_the_whole_robot() -> None:
     )
     said = [jid.identify_joints(each).report() for each in (bare, driven)]
     assert "joint 1 failed: torque: the recording has no signal torque; " in said[0]
-    assert ["a drive in the robot's facts" in each for each in said] == [False, True]
+    assert ["a position drive in the robot's facts" in each for each in said] == [False, True]

@@ -163,11 +163,11 @@ def test_trajectory_and_signal_carry_units(run: jid.SimulatedRecording) -> None:
         ),
         (
             lambda _: jid.plot.sensitivity(TRUE, "stribeck_velocity"),
-            *("is 'stribeck_velocity': it has no value; .* are .*coulomb", "parameter"),
+            *("is 'stribeck_velocity': this parameter has no value; .* are .*coulomb", "parameter"),
         ),
         (
             lambda p: jid.plot.torque_over_velocity(p, sensed_by=TRUE),
-            *("no sensor that could be subtracted", "recording"),
+            *("no torque sensor to subtract", "recording"),
         ),
         (
             lambda p: jid.plot.torque_over_velocity(p, curve=jid.thesis_joint()),
@@ -199,7 +199,9 @@ def test_torque_and_the_sensors_parameters_must_be_there(run: jid.SimulatedRecor
 
 def test_convergence_of_another_search_is_refused(run: jid.SimulatedRecording) -> None:
     estimate = dataclasses.replace(jid.identify(run, thesis_joint()), convergence=None)
-    with pytest.raises(jid.InputError, match="estimate: it was made without a genetic search"):
+    with pytest.raises(
+        jid.InputError, match="estimate: this estimate was made without a genetic search"
+    ):
         jid.plot.convergence(estimate)
 
 

@@ -58,10 +58,16 @@ def test_what_is_no_recording(recordings: Any) -> None:
 def test_a_recording_is_not_counted_twice() -> None:
     copy = jid.Recording(**MOTION, torque=np.cos(7.0 * TIME), name="under another name")
     error = refused([RECORDING, copy])
-    assert (error.place, error.reason[:26]) == ("recording 1", "it is the same as recording 0"[:26])
+    assert (error.place, error.reason[:38]) == (
+        "recording 1",
+        "this recording is the same as recording 0"[:38],
+    )
     first, second = RECORDING[:1.0], RECORDING[1.0:]
     error = refused([first, second, RECORDING[1.0:]])
-    assert (error.place, error.reason[:26]) == ("recording 2", "it is the same as recording 1"[:26])
+    assert (error.place, error.reason[:38]) == (
+        "recording 2",
+        "this recording is the same as recording 1"[:38],
+    )
     for other in ({"torque_hold": "zoh"}, {"extra": {"q6_rate": np.cos(TIME)}}):
         listed([RECORDING, jid.Recording(**MOTION, torque=RECORDING.torque, **other)])
 
@@ -86,7 +92,7 @@ def test_a_recording_with_many_gaps() -> None:
     torn = jid.Recording(time=bursts, position=np.sin(bursts), torque=np.cos(bursts))
     error = refused(torn)
     assert (error.argument, error.place) == ("time", "recording 0")
-    assert error.reason.startswith("20 % of its sample intervals are gaps")
+    assert error.reason.startswith("20 % of the sample intervals are gaps")
 
 
 def test_a_motor_side_signal_needs_a_joint() -> None:

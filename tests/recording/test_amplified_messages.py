@@ -58,7 +58,7 @@ def _nested(count: int, depth: int, innermost: bytes) -> bytes:
 @pytest.mark.parametrize(
     ("definition", "message", "expected"),
     [
-        (_nested(40, 3, b""), bytes(100), "it holds more elements than bytes"),
+        (_nested(40, 3, b""), bytes(100), "it states more elements than it has bytes"),
         (_nested(100, 1, b"uint8 b"), bytes(10_000), "it holds more than 8192 numbers"),
         (
             b"string[] name\nfloat64[] position\n",
@@ -121,9 +121,9 @@ def _has_fts4() -> bool:
 def test_another_name_in_each_message(tmp_path: Path) -> None:
     pytest.importorskip("rosbags")
     path = _db3(tmp_path / "a.db3", [_state(b"n%04d" % k) for k in range(100)])
-    assert "different numbers" not in refused(path)
+    assert "fields of numbers" not in refused(path)
     path = _db3(tmp_path / "b.db3", [_state(b"n%05d" % k) for k in range(12_000)])
-    assert "its messages hold more than 10000 different numbers" in refused(path)
+    assert "its messages hold more than 10000 fields of numbers" in refused(path)
 
 
 @pytest.mark.parametrize("name", ["topics", "messages", "message_definitions"])
@@ -333,7 +333,9 @@ def test_so_many_topics_are_compared(tmp_path: Path, monkeypatch: pytest.MonkeyP
     path = _mcap(tmp_path / "a.mcap", body)
     recording = jid.load(path, extra={"c": "/4.c"})
     assert recording.metadata["topics_not_compared"] == 3
-    assert "3 topics are not compared with this one" in " ".join(remarks(recording.metadata))
+    assert "3 topics are not compared with the chosen topic" in " ".join(
+        remarks(recording.metadata)
+    )
     with pytest.raises(jid.InputError, match=r"'/5\.c'"):
         jid.load(path, extra={"c": "/5.c"})
     monkeypatch.setattr(companions, "_MOST_TOPICS", 6)

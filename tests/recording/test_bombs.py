@@ -192,7 +192,7 @@ def test_the_limit_can_be_raised(
     run = jid.Recording(time=time, position=np.zeros(2000), torque=np.zeros(2000))
     path = tmp_path / f"still{ending}"
     run.save(path)
-    with pytest.raises(jid.InputError, match="the limit for a file of its size"):
+    with pytest.raises(jid.InputError, match="the limit for this packed size"):
         jid.load(path)
     assert jid.load(path, unpacked=200_000).fingerprint == run.fingerprint
     with pytest.raises(jid.InputError, match=r"unpacked is -1: a number of bytes"):

@@ -45,7 +45,9 @@ def test_a_damaged_column_is_not_dropped_row_by_row(tmp_path: Path) -> None:
     path = written(tmp_path / "a.csv", dict.fromkeys(range(30), "1e300"))
     with pytest.raises(InputError, match="check the column and its unit"):
         jid.load(path)
-    with pytest.raises(InputError, match="30 of 60 rows have a value that no joint has"):
+    with pytest.raises(
+        InputError, match="30 of 60 rows have a value that is impossible for a joint"
+    ):
         jid.load(path, drop_invalid=True)
 
 

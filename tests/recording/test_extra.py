@@ -40,7 +40,7 @@ def test_extra_signals_are_read_only_and_checked() -> None:
         ({"rate": RATE[:-1]}, "199 samples, but time has 200"),
         ({"rate": np.where(TIME == 0.5, np.nan, RATE)}, "finite"),
         ({"q6 rate": RATE}, "letters, digits"),
-        ({"torque": RATE}, "the name of a fixed signal"),
+        ({"torque": RATE}, "this name is reserved for a signal"),
         ([RATE], "mapping"),
     ):
         with pytest.raises(InputError, match=message):

@@ -172,7 +172,7 @@ def test_a_chunk_larger_than_its_file_is_refused(tmp_path: Path) -> None:
     known = struct.pack("<IIQQ", size, 0, 0, 0)  # of a chunk in the index: its size, mask and place
     assert content.count(known) == 1
     path.write_bytes(content.replace(known, struct.pack("<IIQQ", 2_600_000_000, 0, 0, 0)))
-    assert "a chunk claims 2600000000 bytes, but the file has" in _refused(path)
+    assert "a chunk states 2600000000 bytes, but the whole file has only" in _refused(path)
 
 
 def test_all_chunks_together_are_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -134,9 +134,9 @@ def test_info_says_what_stands_beside_the_rows(
     [
         ("{", "it is not JSON"),
         ("[" * 100_000, "it is not JSON"),
-        ('{"name": "elbow"}', "it holds no rows"),
-        ('{"entries": []}', "it holds no rows"),
-        ('{"entries": [1, 2, 3]}', "it holds no rows"),
+        ('{"name": "elbow"}', "the file holds no rows"),
+        ('{"entries": []}', "the file holds no rows"),
+        ('{"entries": [1, 2, 3]}', "the file holds no rows"),
     ],
 )
 def test_what_is_no_log_is_refused(text: str, reason: str, tmp_path: Path) -> None:

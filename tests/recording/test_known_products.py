@@ -128,6 +128,9 @@ def test_what_is_stated_wins_and_a_contradiction_is_said(
     amperes = log(tmp_path / "c.csv", {"time_s": TIME, "q_rad": ANGLE, "i_A": EFFORT})
     line = ["info", str(amperes), "--column", "torque=i_A", "--scale", "torque=1"]
     assert main(line) == 0
-    assert "torque is read in the call's unit, not in the file's A" in capsys.readouterr().out
+    assert (
+        "torque is read in the unit that the call states, not in the file's unit A"
+        in capsys.readouterr().out
+    )
     counts = log(tmp_path / "d.csv", {"time_s": TIME, "position [counts]": COUNTS})
     assert "overridden_units" not in jid.load(counts, scale={"position": 0.001}).metadata

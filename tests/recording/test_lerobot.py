@@ -224,13 +224,14 @@ def test_the_unit_is_asked_and_what_is_printed_reads_the_file(
     folder = dataset(tmp_path / "pick", "v3.0", SO101, [episode(k) for k in range(3)])
     code, said = answer(["info", str(folder)], capsys)
     assert code == 2
-    assert "a LeRobot dataset does not say" in said
+    assert "LeRobot datasets use degrees, rad, or" in said
     assert (
-        "--unit position=deg --unit reference=deg (use rad instead of deg if it is in rad; " in said
+        "--unit position=deg --unit reference=deg (write rad instead of deg for positions in rad; "
+        in said
     )
     for each in (said, refused(folder, partial(jid.load, joints="all"))):
         assert (
-            "if values run from −100 to 100, scale = half of the joint's range in rad / 100)"
+            "for values from −100 to 100, state scale = half of the joint's range in rad / 100)"
             in each
         )
     pasted = ["--unit", "position=deg", "--unit", "reference=deg"]
@@ -258,7 +259,7 @@ def test_files_that_do_not_belong_together_are_named(tmp_path: Path) -> None:
     folder = dataset(tmp_path / "pick", "v2.0", SO101, [episode(k) for k in range(3)])
     other: Mapping[str, Any] = {k: v for k, v in episode(1).items() if k != "action"}
     write(folder / "data" / "chunk-000" / "episode_000001.parquet", dict(other))
-    assert "its columns are not those of episode_000000.parquet" in refusal(folder)
+    assert "its columns differ from the columns of episode_000000.parquet" in refusal(folder)
     for file in (folder / "data").rglob("*.parquet"):
         file.unlink()
     assert "no .parquet file in data" in refusal(folder)

@@ -102,9 +102,7 @@ def test_lists_that_differ_in_length_in_parquet_are_refused(tmp_path: Path) -> N
     lists = Q.tolist()
     lists[7] = [1.0]
     parquet.write_table(pa.table({"t": TIME, "q": lists}), tmp_path / "a.parquet")
-    assert "a list of 2 numbers is expected in every row" in refusal(
-        tmp_path / "a.parquet", joint=0
-    )
+    assert "every row needs a list of 2 numbers" in refusal(tmp_path / "a.parquet", joint=0)
 
 
 def test_a_text_in_brackets_is_no_list(tmp_path: Path) -> None:

@@ -58,7 +58,7 @@ def test_every_number_is_the_nearest_double(
 @pytest.mark.parametrize(
     ("row", "message"),
     [
-        ("17.0,1.0,2.0", "line 17002: 3 cells where the header names 4"),
+        ("17.0,1.0,2.0", "line 17002: 3 cells, but 4 headers"),
         ("17.0,1.0,2.0,3.0,4.0", "line 17002: 5 cells"),
         ("17.0,1.0,x,3.0", "line 17002, column 'velocity_rad_s': 'x' is not a number"),
         ("17.0,1.0,,3.0", "line 17002, column 'velocity_rad_s': the cell is empty"),

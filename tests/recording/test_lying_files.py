@@ -130,7 +130,7 @@ def npz_bzip2(path: Path) -> str:
         for name in ("position.npy", "torque.npy"):
             archive.writestr(name, head.getvalue())
         archive.infolist()[0].file_size = len(head.getvalue()) + 56_000_000
-    return "packed by a method that numpy.savez_compressed does not use"
+    return "its compression method differs from the method of numpy.savez_compressed"
 
 
 LIES: tuple[Callable[[Path], str], ...] = (
@@ -374,5 +374,7 @@ def test_chunks_packed_twice_are_refused(tmp_path: Path) -> None:
             space = h5py.h5s.create_simple((12,))
             made = h5py.h5d.create(file.id, name.encode(), h5py.h5t.NATIVE_DOUBLE, space, made_by)
             made.write_direct_chunk((0,), packed)
-    with pytest.raises(jid.InputError, match="is packed by several filters, which is not read"):
+    with pytest.raises(
+        jid.InputError, match="is packed by several filters, which jointid cannot read"
+    ):
         jid.load(path)

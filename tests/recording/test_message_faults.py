@@ -23,7 +23,7 @@ def log(folder: Path, states: list[State]) -> Path:
 def test_velocities_of_zero_are_named_with_what_to_paste(tmp_path: Path) -> None:
     states = [replace(state, velocity=[0.0]) for state in motion(200, ["a"])]
     path = log(tmp_path, states)
-    with pytest.raises(jid.InputError, match="velocity: it is always 0") as caught:
+    with pytest.raises(jid.InputError, match="velocity: the velocity is always 0") as caught:
         jid.identify(jid.load(path))
     (advice,) = caught.value.remedy
     assert not isinstance(advice, str)
@@ -59,7 +59,7 @@ def test_two_publishers_of_one_joint_are_refused(every: int, tmp_path: Path) -> 
             moved = [each + 1.0 for each in state.position]
             states.append(replace(state, stamp=state.stamp + 3_000_000, position=moved))
     text = refusal(log(tmp_path, states), joint="elbow")
-    assert "two nodes publish the same joint" in text
+    assert "two nodes published the same joint" in text
 
 
 def test_noise_dither_and_motion_are_one_publisher() -> None:

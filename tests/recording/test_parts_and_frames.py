@@ -45,7 +45,7 @@ def test_a_name_is_a_signal_also_an_extra_one() -> None:
         ("sensor", "it has time, position, velocity, torque"),
         (3, "a signal's name or times"),
         (1.5, "a signal's name or times"),
-        (slice(0.6, 0.9, 0.1), "`resample` changes the period"),
+        (slice(0.6, 0.9, 0.1), "`resample` changes the sample period"),
         (slice("a", None), "a time"),
         (slice(0.6, 0.61), "at least 8"),
     ],

@@ -83,7 +83,7 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ),
     ({"time": TIME[::-1]}, "index 1: time is .*: the sample before is at 0.11"),
     ({"time": changed(0, -np.inf)}, "index 0: time is -inf"),
-    ({"time": changed(0, -1e308)}, "time: the span is too long"),
+    ({"time": changed(0, -1e308)}, "time: the times span more than"),
     (
         {"position": changed(4, 1e308)},
         "index 3: position is .* changes too fast .*give the velocity",
@@ -189,8 +189,8 @@ def test_crop_includes_both_ends_and_keeps_derived_velocity() -> None:
 @pytest.mark.parametrize(
     ("start", "stop", "message"),
     [
-        (0.0, 0.065, r"0\.0 s to 0\.065 s leaves 7 samples of 12"),
-        (5.0, 4.0, "leaves 0 samples"),
+        (0.0, 0.065, r"0\.0 s to 0\.065 s there are 7 of 12 samples"),
+        (5.0, 4.0, "there are 0 of 12 samples"),
         (np.nan, 4.0, "start is nan"),
         (0.0, "end", "stop is 'end'"),
     ],

@@ -85,8 +85,8 @@ def test_gaps_are_kept_and_nothing_is_made_up_inside(period: float) -> None:
         ({"rate": 0}, r"rate is 0: a positive number \[Hz\]"),
         ({"rate": np.inf}, r"rate is inf: a positive number \[Hz\]"),
         ({"rate": True}, "rate is True: a positive number"),
-        ({"period": 1e-9}, "gives more than 50000000 samples; seconds are expected"),
-        ({"period": 0.5}, "a period of 0.5 s over 0.89 s leaves 2 samples; at least 8"),
+        ({"period": 1e-9}, "gives more than 50000000 samples; state the period in seconds"),
+        ({"period": 0.5}, "a period of 0.5 s over 0.89 s gives only 2 samples; at least 8"),
     ],
 )
 def test_what_cannot_be_resampled(arguments: dict[str, Any], message: str) -> None:
@@ -150,9 +150,12 @@ def test_parts_at_times() -> None:
             r"at\[0\] is 0\.0: a time inside the recording is expected \(0\.0 s to 0\.39 s\)",
         ),
         ({"at": [0.4]}, r"at\[0\] is 0\.4: a time inside"),
-        ({"at": [0.2, 0.1]}, r"at\[1\] is 0\.1: the time before it is 0\.2 s, and the times must"),
-        ({"at": [0.05]}, "part 1 of 2 would have 5 samples of 40; at least 8"),
-        ({"at": [0.2, 0.21]}, "part 2 of 3 would have 1 samples of 40"),
+        (
+            {"at": [0.2, 0.1]},
+            r"at\[1\] is 0\.1: the times must increase, but the previous time is 0\.2 s",
+        ),
+        ({"at": [0.05]}, "part 1 of 2 would have 5 of 40 samples; at least 8"),
+        ({"at": [0.2, 0.21]}, "part 2 of 3 would have 1 of 40 samples"),
     ],
 )
 def test_what_cannot_be_split(arguments: dict[str, Any], message: str) -> None:

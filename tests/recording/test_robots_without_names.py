@@ -66,13 +66,16 @@ def test_a_block_keeps_the_units_of_its_headers(tmp_path: Path) -> None:
     [
         (
             {"position": "1:3", "torque": "4:5"},
-            r"as many columns as there are joints \(position: 3",
+            r"their numbers of columns differ \(position: 3",
         ),
         ({"position": "1:3", "torque": "3:5"}, "column 3 is also in the block position"),
-        ({"position": "1:99"}, "the columns are 0 to 6"),
-        ({"position": "3:1"}, "its first and its last"),
+        ({"position": "1:99"}, "the columns have the numbers 0 to 6"),
+        ({"position": "3:1"}, "its first and last column"),
         ({"speed": "1:3"}, "speed"),
-        ({"position": "1:3", "torque": 4}, "a block of 3 columns is expected, as 1:3 of position"),
+        (
+            {"position": "1:3", "torque": 4},
+            "a block of 3 columns is expected, because position has the block 1:3",
+        ),
         ({"position": "1:3", "velocity": "column 5"}, "velocity.*: a block of 3 columns"),
     ],
 )
@@ -93,7 +96,7 @@ def test_the_command_says_how_blocks_are_given(
         code, said = answer(line, capsys)
         assert code == 2
         assert form in said
-        assert "first and last column of each signal, counted from 0, as position=1:6" in said
+        assert "first and last column number of each signal, e.g. position=1:6" in said
     filled = form.replace("COLUMN", "0").replace("FIRST:LAST", "1:3") + " --column torque=4:6"
     assert answer(["identify", path, "--joints", "all", *filled.split()], capsys)[0] == 0
     assert answer(["info", path, *filled.split()], capsys)[0] == 0
@@ -167,7 +170,7 @@ def test_a_pickle_is_refused_with_the_line_that_converts_it(
     path.write_bytes(b"cos\nsystem\n(S'touch ran'\ntR.")
     monkeypatch.chdir(tmp_path)
     message = refusal(path)
-    assert "a pickle of PyTorch, which may run code and is never read" in message
+    assert "jointid never reads pickles, because they may run code" in message
     command, option, code = shlex.split(message.partition("convert it with ")[2])
     assert (command, option) == ("python", "-c")
     run = motion(3, 1)

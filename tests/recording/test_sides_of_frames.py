@@ -14,5 +14,5 @@ def test_a_frame_is_brought_to_the_joint() -> None:
     run = jid.Recording.from_dataframe(frame, side={"velocity": "motor"}, gear_ratio=20.0)
     np.testing.assert_allclose(run.velocity, np.cos(time))
     assert run.metadata["gear_ratio"] == 20.0
-    with pytest.raises(jid.InputError, match="the gear ratio is needed to combine them"):
+    with pytest.raises(jid.InputError, match="the gear ratio is needed to combine these signals"):
         jid.Recording.from_dataframe(frame, side={"velocity": "motor"})

@@ -76,7 +76,7 @@ def test_messages_in_a_log_are_said_with_the_way_to_them(bag: Path, tmp_path: Pa
     said = recording.metadata["incomplete"]
     assert said == (
         f"its last messages may be in {path.name}-wal, which is not read. "
-        "To merge the two files, open a copy of both with SQLite"
+        "To merge the two files, copy both and open the copied bag with SQLite"
     )
     assert _contents(path.parent) == before
     copy = _copied(path, tmp_path / "whole", "-wal")
@@ -106,7 +106,7 @@ def test_an_unfinished_write_is_said(bag: Path, tmp_path: Path) -> None:
     path = _unfinished(bag, tmp_path / "unfinished")
     before = _contents(path.parent)
     assert _said(path) == (
-        f"its last write was not finished: the earlier content in {path.name}-journal is not restored"
+        f"its last write was not finished; jointid does not restore the earlier content from {path.name}-journal"
     )
     assert _contents(path.parent) == before
 
@@ -188,7 +188,7 @@ def test_columns_that_hold_more_than_the_file(value: bytes | str, tmp_path: Path
     path = _behind(tmp_path / "a.db3", value, 200)
     _many_rows_of_few_pages(path)
     said = refused(path)
-    assert 'column "a""b" of messages, before \'timestamp\', holds more than the file' in said
+    assert 'column "a""b" of messages, before \'timestamp\', holds more bytes than the file' in said
 
 
 def test_a_column_of_little_before_the_topic(tmp_path: Path) -> None:

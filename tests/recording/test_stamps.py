@@ -172,7 +172,7 @@ def test_absurd_values_are_refused(value: str, column: int, tmp_path: Path) -> N
     path = written(tmp_path / "a.csv", ["t_s,q_rad,tau_Nm", *map(",".join, rows)])
     message = refusal(path)
     assert "line 7, column" in message
-    assert "no joint has such a value" in message
+    assert "this value is impossible for a joint" in message
 
 
 @pytest.mark.parametrize(

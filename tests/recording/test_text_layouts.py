@@ -81,7 +81,7 @@ def test_a_long_wide_file_with_text(ending: str, tmp_path: Path) -> None:
     assert loaded.torque is not None
     assert loaded.torque.tolist() == [-k for k in range(count)]
     rows[2000] = rows[2000].rpartition(",")[0]
-    assert "line 2002: 73 cells where the header names 74" in refusal(
+    assert "line 2002: 73 cells, but 74 headers" in refusal(
         written(tmp_path / f"b{ending}", [header, *rows, ""])
     )
 
@@ -171,7 +171,7 @@ def test_a_slow_temperature_cuts_no_sample(count: int, tmp_path: Path) -> None:
         (left_out,) = loaded.metadata["left_out"]
         assert (
             left_out["reason"]
-            == "its samples are from 0 to 0.1 s, those of the others from 0 to 0.399 s"
+            == "its samples reach from 0 to 0.1 s, but the samples of the other channels reach from 0 to 0.399 s"
         )
 
 
@@ -189,7 +189,7 @@ def test_twincat_scope_with_names_beside_time(tmp_path: Path) -> None:
 
 def test_twincat_scope_without_rows(tmp_path: Path) -> None:
     text = scope([(1.0, [("ActPos", "°", [1.0])])], "\t", ",", fill=False)
-    assert "no rows below it" in refusal(written(tmp_path / "a.csv", text.replace("0\t1,0", "")))
+    assert "header, but no rows" in refusal(written(tmp_path / "a.csv", text.replace("0\t1,0", "")))
 
 
 cell = st.one_of(

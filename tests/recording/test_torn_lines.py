@@ -56,5 +56,5 @@ def test_short_line_further_up_is_still_refused(tmp_path: Path) -> None:
     path = tmp_path / "torn.csv"
     lines = text().splitlines()
     path.write_text("\n".join([*lines[:30], lines[30][:9], *lines[31:]]))
-    with pytest.raises(jid.InputError, match="line 31: 2 cells where the header names 3"):
+    with pytest.raises(jid.InputError, match="line 31: 2 cells, but 3 headers"):
         jid.load(path)

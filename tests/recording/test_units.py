@@ -126,7 +126,7 @@ def test_what_is_no_unit(text: str) -> None:
 
 def test_unknown_unit_lists_the_known_ones() -> None:
     with pytest.raises(
-        InputError, match=r"^run\.csv: unit is 'furlong': unknown unit; known are m, cm"
+        InputError, match=r"^run\.csv: unit is 'furlong': unknown unit; choose one of m, cm"
     ):
         unit_named("furlong", dimensions=("length",), place="run.csv")
 
@@ -158,9 +158,7 @@ def test_the_least_value_is_not_in_minutes() -> None:
 def test_mega_is_not_milli(text: str) -> None:
     assert find_unit(text) is None
     if find_unit(f"m{text[1:]}"):
-        with pytest.raises(
-            InputError, match=f"the prefix M is mega, a million; milli is m{text[1:]}"
-        ):
+        with pytest.raises(InputError, match=f"the prefix M means mega; milli is m{text[1:]}"):
             unit_named(text)
 
 

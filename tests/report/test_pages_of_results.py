@@ -79,7 +79,7 @@ def test_a_study_says_how_often_the_truth_was_found() -> None:
     share = np.mean([cell.success or 0.0 for cell in summary.cells])
     said = f"Every parameter is within 5 % of the truth in {100.0 * share:.0f} % of the trials."
     assert f"<b>{said}</b>" in top(text)
-    assert "least often with windows 50, model coulomb_viscous (0 %)" in top(text)
+    assert "and smallest with windows 50, model coulomb_viscous (0 %)" in top(text)
     lines = pictures(text)[0]
     assert {"model stribeck", "model coulomb_viscous", "largest error [%]"} <= set(lines.texts)
     assert '>search</th><td role="cell">separable, default</td>' in text
@@ -165,7 +165,9 @@ def test_a_page_is_written_whole(tmp_path: Path) -> None:
 
 def test_a_page_is_no_pdf(tmp_path: Path) -> None:
     design = designed()
-    with pytest.raises(jid.InputError, match=r"page\.pdf.: a report ends in one of \.html, "):
+    with pytest.raises(
+        jid.InputError, match=r"page\.pdf.: the file of a report ends in one of \.html, "
+    ):
         save_report(design, tmp_path / "page.pdf")
     assert not list(tmp_path.iterdir())
 

@@ -100,7 +100,7 @@ def test_the_next_step_follows_from_the_outcome(ring: Commissioning) -> None:
     assert f"Next: {found.advice[0]}" in report_page(ring)
     plain = replace(ring.estimates[-1], findings=())
     said = next_step(replace(ring, estimates=(plain,)))
-    assert said == "Next: save these values to the joint file; no finding warns of them."
+    assert said == "Next: save these values to the joint file; no finding advises against this."
     worse = replace(ring, runs=ring.runs[::-1])
     assert "do not use these values" in next_step(worse)
     only = replace(ring, runs=ring.runs[:1], estimates=())
@@ -128,7 +128,7 @@ def test_a_stopped_session_has_a_page_that_says_why(
     page = written.read_text(encoding="utf-8")
     top = page[: page.index("<h2")]
     assert '<p class="verdict not-usable"><b>initial: stopped by tracking_error after' in top
-    assert "Next: find out why the limit was reached" in top
+    assert "Next: before the joint moves again, find out why the limit was reached" in top
     assert "The drive confirmed that the motor is off." in page
     limits = page.partition('id="limits"')[2].partition("</table>")[0]
     cells = re.findall(r"<td[^>]*>(.*?)</td>", limits.partition(">tracking error</th>")[2])

@@ -55,12 +55,12 @@ CLASSES: dict[str, type[Result]] = {
 }
 # Why a kind is not kept in files and tables of its own.
 HOLES: dict[str, str] = {
-    "rollout": "simulated again from an estimate and its logs",
-    "bootstrap": "drawn again from an estimate with its seed",
-    "self-test": "run again from an estimate with its seed",
-    "causes": "an estimate's findings have them",
+    "rollout": "simulate it again from an estimate and its logs",
+    "bootstrap": "draw it again from an estimate with its seed",
+    "self-test": "run it again from an estimate with its seed",
+    "causes": "the estimate's findings contain the causes",
     "commissioning": "its recordings and estimates are saved",
-    "online": "replaced by the next one; its joint is saved",
+    "online": "the next estimate replaces this estimate; you can save only the joint",
 }
 # A method of its own is no promise: a self-test's JSON is not read back.
 _BEYOND = {("self-test", "to_json")}
@@ -309,7 +309,7 @@ def test_other_endings_come_back(name: str, ending: str, tmp_path: Path) -> None
 def test_an_estimate_returns_the_path_of_a_joint_file(tmp_path: Path) -> None:
     path = joint_estimate().save(tmp_path / "joint.toml")
     assert jid.Joint.load(path).parameters["coulomb"].value is not None
-    with pytest.raises(jid.InputError, match=r"joint\.toml: this is no result of jointid"):
+    with pytest.raises(jid.InputError, match=r"joint\.toml: this is not a result of jointid"):
         Result.load(path)
 
 
@@ -367,9 +367,9 @@ def test_what_needs_the_recordings_says_so() -> None:
 @pytest.mark.parametrize(
     ("text", "says"),
     [
-        ("[]", "no result of jointid"),
-        ('{"kind": "jointid"}', "no result of jointid"),
-        ('{"kind": "jointid self-test"}', "of the kind 'self-test' is not read"),
+        ("[]", "not a result of jointid"),
+        ('{"kind": "jointid"}', "not a result of jointid"),
+        ('{"kind": "jointid self-test"}', "of the kind 'self-test' cannot be read"),
         ('{"kind": "jointid dream"}', "does not know the kind 'dream'"),
         ("{", "not JSON"),
     ],
@@ -402,7 +402,9 @@ def _document_of(name: str) -> dict[str, Any]:
 
 def test_a_kind_that_is_not_kept_says_so() -> None:
     for name in HOLES:
-        with pytest.raises(jid.InputError, match=f"of the kind '{name}' is not read from a file"):
+        with pytest.raises(
+            jid.InputError, match=f"of the kind '{name}' cannot be read from a file"
+        ):
             CLASSES[name].from_json("{}")
 
 

@@ -89,10 +89,10 @@ def test_the_page_has_the_numbers_of_the_table() -> None:
     for text in (
         f"{table('4.6', 'n = 1000'):.2f} % with 1000, {table('4.6', 'n = 11999'):.2f} % with 11,999",
         f"{table('6-14', 'closed loop', 'without ripple'):.0f} % off",
-        f"all are within {table('6-14', 'closed loop', 'with ripple'):.1f} %",
+        f"all parameters are within {table('6-14', 'closed loop', 'with ripple'):.1f} %",
         f"from {slow:.1f} to {subtracted:.1f} N·m",
-        f"the open-loop estimate is up to {table('6-18', 'open loop', 'without ripple'):.0f} % off, "
-        f"{table('6-18', 'open loop', 'with ripple'):.1f} % with",
+        f"the open-loop estimate are up to {table('6-18', 'open loop', 'without ripple'):.0f} % off, "
+        f"or {table('6-18', 'open loop', 'with ripple'):.1f} % with",
     ):
         assert text in page
 

@@ -94,7 +94,7 @@ def test_a_difference_below_0_is_drawn_anew(path: Path) -> None:
 
 def test_a_urdf_has_no_place_for_it(path: Path, found: jid.RobotEstimate, tmp_path: Path) -> None:
     target = tmp_path / "arm.urdf"
-    with pytest.raises(jid.InputError, match="elbow has friction that differs"):
+    with pytest.raises(jid.InputError, match="elbow also has friction that differs"):
         jid.export(found, target, into=path)
     jid.export(found, target, into=path, approximate=True)
     assert "not in this file: friction that differs" in target.read_text(encoding="utf-8")
@@ -129,7 +129,7 @@ def test_a_file_of_facts_holds_models(
         ('[joints.nix]\nmodel = "auto"', r"^facts\.toml: models is .nix.: the robot has no such"),
         ('[joints.elbow]\nmodel = "lugre"', r"^facts\.toml: models is .lugre"),
         ("[joints.elbow]\nratio = 3", r"^facts\.toml: joints\.elbow is .*joint's model"),
-        ("models = 3", r"^facts\.toml: models is 3: models by joints' names"),
+        ("models = 3", r"^facts\.toml: models is 3: a mapping from joint names to models"),
     ],
 )
 def test_a_model_that_does_not_fit_names_the_file(

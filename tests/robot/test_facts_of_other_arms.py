@@ -136,7 +136,7 @@ def test_a_mirrored_plane_names_both_joints_that_may_turn_the_other_way(tmp_path
     )
     assert warned(found) == ["wrong_sign"]
     assert "j1" in found.findings[0].cause
-    assert re.search(r"or those of j[12]", found.findings[0].cause)
+    assert re.search(r"or the signs of j[12]", found.findings[0].cause)
 
 
 @pytest.mark.parametrize(

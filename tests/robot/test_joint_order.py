@@ -92,7 +92,7 @@ def test_torques_in_another_order_are_named(
     right = ", ".join(NAMES[place] for place in np.argsort(order))
     assert said.advice[0].text.endswith(f"the right order of the torques is {right}")
     for place, column in enumerate(order):
-        moved = f"the values of {NAMES[column]} are in the torques of {NAMES[place]}"
+        moved = f"the torques of {NAMES[place]} hold the values of {NAMES[column]}"
         assert (moved in said.details) == (place != column)
 
 
@@ -121,7 +121,7 @@ def test_currents_in_another_order_are_named(run: jid.RobotRecording) -> None:
     robot = jid.Robot.from_urdf(URDF, torque_constants=constants.tolist())
     wrong = in_order(amperes, [0, 1, 3, 2, 4, 5, 6], "current")
     assert (
-        f"the values of {NAMES[3]} are in the torques of {NAMES[2]}"
+        f"the torques of {NAMES[2]} hold the values of {NAMES[3]}"
         in only(jid.identify(wrong, robot), "swapped_torques").details
     )
 

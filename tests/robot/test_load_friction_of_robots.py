@@ -149,7 +149,7 @@ def test_an_arm_without_it_has_none(path: Path, seed: int) -> None:
 
 
 def test_a_load_of_the_drive_is_refused(path: Path) -> None:
-    with pytest.raises(jid.InputError, match="of the links' torque"):
+    with pytest.raises(jid.InputError, match="from the links' torque"):
         jid.identify_robot(
             small_arm.recording(path, duration=1.0),
             jid.Robot.from_urdf(path),

@@ -90,7 +90,7 @@ def test_inertia_that_cannot_be_written_is_refused(
 ) -> None:
     target = tmp_path / "out.urdf"
     known = jid.identify_robot(recording(path), jid.Robot.from_urdf(path), model="coulomb_viscous")
-    with pytest.raises(jid.InputError, match="taken from the URDF"):
+    with pytest.raises(jid.InputError, match="values are those of the URDF"):
         jid.export(known, target, into=path, inertia=True)
     more = urdf(tmp_path, URDF.replace("</robot>", FLANGE.replace('"fixed"', '"continuous"')))
     with pytest.raises(jid.InputError, match="flange_joint"):

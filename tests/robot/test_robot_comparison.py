@@ -146,7 +146,7 @@ def test_one_command(path: Path, tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert max(map(len, lines[:-1])) <= 100
     assert main([*line, "-v"]) == 0
     assert "chosen: inertia urdf, coulomb_viscous" in capsys.readouterr().out
-    assert "torque that the candidate was not fitted to" in page.read_text(encoding="utf-8")
+    assert "torque that was not used for the fit" in page.read_text(encoding="utf-8")
     assert jid.RobotEstimate.load(saved).inertia == "urdf"
     assert main([*line, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["kind"] == "jointid robot comparison"

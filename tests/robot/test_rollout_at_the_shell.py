@@ -27,5 +27,5 @@ def test_the_answer_comes_also_without_a_rollout(
     assert main([*line, "--quiet"]) == 0
     said = capsys.readouterr().out
     assert "shoulder  coulomb" in said
-    assert ("no rollout: the simulated motion leaves all bounds" in said) == (factor > 1.0)
+    assert ("no rollout: the simulation diverges" in said) == (factor > 1.0)
     assert ('id="rollouts"' in page.read_text("utf-8")) == (factor == 1.0)

@@ -126,7 +126,7 @@ def test_the_place_is_named(tmp_path: Path) -> None:
         (("schema",), "9", "update jointid"),
         (("robot", "joints", 0, "name"), '"elbow"', "there twice"),
         (("robot", "joints", 0, "name"), '"wrist"', "the robot has wrist"),
-        (("robot", "joints", 1, "parent"), "1", "a link before this one"),
+        (("robot", "joints", 1, "parent"), "1", "the index of an earlier link"),
         (("robot", "joints", 0, "rotation", 0, 0), "0.5", "a rotation"),
         (("robot", "joints", 0, "axis"), "[0.0, 0.0, 0.0]", "length 1"),
         (("robot", "couplings"), "[[1.0, 0.0], [1.0, 0.0]]", "singular"),
@@ -134,11 +134,11 @@ def test_the_place_is_named(tmp_path: Path) -> None:
         (("robot", "gear_ratios"), "[1.0, 0.0]", "not 0"),
         (("robot", "zero_offsets"), "[1.0]", "2 numbers"),
         (("joints", "elbow", "model"), '"coulomb_viscous"', "does not fit"),
-        (("joints", "elbow", "parameters", "coulomb", "name"), '"static"', "not the name"),
+        (("joints", "elbow", "parameters", "coulomb", "name"), '"static"', "the key of this entry"),
         (("joints", "elbow", "windows", "start"), "[1.0]", "same length"),
-        (("joints", "elbow", "windows", "recording", 0), "1", "contains fewer recordings"),
+        (("joints", "elbow", "windows", "recording", 0), "1", "index into settings.recordings"),
         (("base_parameters", 1, "name"), '"Iyy_1 + 0.16 m_2 + rotor_1"', "twice"),
-        (("free", 0), '"shoulder.current"', "none of the parameters"),
+        (("free", 0), '"shoulder.current"', "no parameter has this name"),
         (("free", 0), '"shoulder.viscous"', "there twice"),
         (("covariance",), "[[1.0]]", "rows of"),
         (("inertial", 0), "[1.0]", "10 to 10 items"),
@@ -166,7 +166,7 @@ def test_a_parameter_that_is_missing_is_named() -> None:
     document["joints"]["elbow"]["parameters"]["ripple"] = document["joints"]["elbow"]["parameters"][
         "coulomb"
     ]
-    with pytest.raises(jid.InputError, match="known are coulomb"):
+    with pytest.raises(jid.InputError, match="choose one of coulomb"):
         jid.RobotEstimate.from_json(json.dumps(document))
 
 

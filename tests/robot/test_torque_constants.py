@@ -103,7 +103,7 @@ def test_one_value_for_several_joints_is_asked_about(
     constant = ["--torque-constant", "14,14"] if option == "--gear-ratio" else []
     code, said = answer([*line, *constant, option, "14"], capsys)
     assert code == 2
-    assert f"{option} 14,14 (if all have it)" in said
+    assert f"{option} 14,14 (if all joints have this value)" in said
     assert answer([*line, *constant, option, "14,14"], capsys)[0] == 0
     code, said = answer([*line, *constant, option, "14,14,14"], capsys)
     assert code == 2

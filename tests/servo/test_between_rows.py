@@ -50,7 +50,7 @@ def test_a_duty_that_is_computed_is_held_too() -> None:
 def test_a_command_that_moves_evenly_is_not_taken_as_held() -> None:
     found = jid.identify_servo(bench_runs(TRUTH, seed=1), servo_joint())
     assert found.command_lag == 0.0
-    assert "no sign that it is held" in found.report(verbose=True)
+    assert "no evidence that the command is held" in found.report(verbose=True)
     # What could not be told apart is in the errors.
     assert "command" in found.parameters["torque_constant"].systematic
 

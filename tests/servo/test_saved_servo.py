@@ -37,7 +37,7 @@ def test_what_does_not_fit_together_is_refused(tmp_path: Path) -> None:
     text = found.to_json()
     for old, new, message in (
         ('"jointid servo"', '"jointid robot"', "not a servo's estimate"),
-        ('"name": "inertia"', '"name": "mass"', "not the name of the entry"),
+        ('"name": "inertia"', '"name": "mass"', "differs from the key"),
         ('"run 0",', "", "one number for each of the runs"),
         ('"schema": 1,\n "kind"', '"schema": 2,\n "kind"', "schema"),
     ):

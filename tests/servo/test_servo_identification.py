@@ -198,7 +198,7 @@ def test_what_is_missing_is_named(runs: list[jid.Recording]) -> None:
 def test_a_duty_in_percent_is_refused(runs: list[jid.Recording]) -> None:
     percent = [changed(r, extra={**r.extra, "duty": 100.0 * r.extra["duty"]}) for r in runs]
     with pytest.raises(
-        jid.InputError, match=r"duty: it reaches .*, but 1 is .* duty_scale = 0\.01"
+        jid.InputError, match=r"duty: the duty reaches .*, but 1 is .* duty_scale = 0\.01"
     ):
         jid.identify_servo(percent, servo_joint(), draws=0)
     joint = servo_joint()

@@ -70,7 +70,7 @@ def test_what_differs_is_named(changes: dict[str, Any], says: str) -> None:
     said = warning(**changes)
     assert says in said
     assert said.startswith("motion.toml was designed for ")
-    assert said.endswith("design the motion again for it")
+    assert said.endswith("design the motion again for this bench")
     assert "\n" not in said
 
 
@@ -105,4 +105,4 @@ def test_a_controller_without_torque_feedback_believes_nothing_of_the_sensor() -
 def test_many_differences_are_counted() -> None:
     other = JOINT.replace(gear_ratio=30.0, torque_constant=0.1, link=None)
     said = warning(joint=other, controller=jid.Pd(), control_period=4e-3)
-    assert ", and 2 more: the values that the joint reaches" in said
+    assert ", and 2 more: its reached values" in said

@@ -62,7 +62,11 @@ def test_only_sums_of_sines_are_written() -> None:
     [
         ("[trajectory]", "[trajectori]", "trajectory: this is missing"),
         ('form = "sines"', "", r"trajectory\.form: this is missing"),
-        ('form = "sines"', 'form = "cosines"', r"trajectory\.form: this is 'cosines': known are"),
+        (
+            'form = "sines"',
+            'form = "cosines"',
+            r"trajectory\.form: this is 'cosines': choose one of",
+        ),
         (
             "amplitude = [0.5, 0.1]",
             "amplitude = 0.5",
@@ -73,13 +77,13 @@ def test_only_sums_of_sines_are_written() -> None:
         ("[0.5, 0.1]", "[0.5, nan]", r"trajectory\.amplitude\[1\]: .*a finite number"),
         ("frequency = [1.0, 2.5]", "frequency = [1.0]", "trajectory"),
         ("phase =", "phases =", r"trajectory\.phase: this is missing"),
-        ("offset = 0.2", "ofset = 0.2", r"trajectory\.ofset: unknown; known are"),
+        ("offset = 0.2", "ofset = 0.2", r"trajectory\.ofset: unknown key; choose one of"),
         ("duration = 8.0", "duration = 0.0", "trajectory.*0"),
         ("duration = 8.0", "duration = ", "not TOML"),
         ("duration = 8.0", f"duration = {'[' * 50}{']' * 50}", "nested too deeply"),
         ("position = [-0.4, 0.8]", "position = [0.4]", r"peaks\.position: 2 to 2 items"),
         ("torque = 90.0", "torque = -1.0", r"peaks\.torque: .*a number from 0"),
-        ("position = [-0.4, 0.8]", "position = [0.8, -0.4]", "the first must not be above"),
+        ("position = [-0.4, 0.8]", "position = [0.8, -0.4]", "the first value must not be above"),
     ],
 )
 def test_a_file_that_cannot_be_used_is_named_with_its_key(

@@ -424,7 +424,7 @@ def test_bad_options_are_refused(joint: jid.Joint, change: dict[str, Any], compl
 
 
 def test_what_is_missing_is_named(joint: jid.Joint) -> None:
-    with pytest.raises(jid.InputError, match="coulomb: has no value"):
+    with pytest.raises(jid.InputError, match="coulomb: a simulation needs a value"):
         jid.simulate(thesis_joint(), wrong_controller(), well_excited(0.1))
     with pytest.raises(jid.InputError, match="controllers is 3: one of"):
         jid.simulate(joint, 3, well_excited(0.1))  # type: ignore[call-overload]
@@ -433,7 +433,9 @@ def test_what_is_missing_is_named(joint: jid.Joint) -> None:
         jid.simulate(
             loose, jid.Pd(stiffness=1e12), jid.Trajectory.step(1.0, duration=1.0), position=0.0
         )
-    with pytest.raises(jid.InputError, match="controllers: has 2 entries where others have 3"):
+    with pytest.raises(
+        jid.InputError, match="controllers: this argument has 2 entries, but others have 3"
+    ):
         jid.simulate_batch([joint] * 3, [wrong_controller()] * 2, well_excited(0.1))
 
 

@@ -189,7 +189,7 @@ def test_one_time_gives_numbers_and_several_give_arrays() -> None:
 
 @pytest.mark.parametrize("time", ["a", [[1.0]], math.nan, None, [1.0, math.inf]])
 def test_times_that_are_none_are_refused(time: Any) -> None:
-    with pytest.raises(InputError, match=r"times \[s\] are expected"):
+    with pytest.raises(InputError, match=r"one time or an array of times \[s\] is expected"):
         Trajectory.sine(0.5, 0.25, duration=8.0).sample(time)
 
 

@@ -114,7 +114,7 @@ def test_a_second_header_belongs_to_the_same_study(tmp_path: Path) -> None:
     write(path, HEADER, *ROWS, HEADER | {"trials": 5})
     assert jid.Study.load(path).trials == 5
     write(path, HEADER, *ROWS, HEADER | {"cells": HEADER["cells"][:1]})
-    with pytest.raises(jid.InputError, match=r"line 5: cells: it differs"):
+    with pytest.raises(jid.InputError, match=r"line 5: cells: this field differs"):
         jid.Study.load(path)
 
 

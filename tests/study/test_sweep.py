@@ -369,7 +369,7 @@ def test_what_cannot_be_used_here_is_refused_there_only(
         ({"grid": {"windows": []}}, r"grid: windows is \[\]: at least one value"),
         ({"grid": {"windows": [100, 100]}}, r"windows is \[100, 100\]: a value is given twice"),
         ({"grid": {"windows": {(1, 2): 100}}}, r"grid: windows: \(1, 2\) is not a label"),
-        ({"grid": {"ga": [jid.GaOptions()]}}, "which a table cannot show; give a mapping"),
+        ({"grid": {"ga": [jid.GaOptions()]}}, "a table cannot show the value .*; give a mapping"),
         ({"grid": {"ga.population": [1]}}, "population is 1: must be 4 to 1000000"),
         ({"grid": {"ga.population": ["many"]}}, "grid: ga.population is 'many': a whole number"),
         ({"grid": {"ga.population": [True]}}, "ga.population is True: a whole number"),
@@ -666,7 +666,7 @@ def test_a_plot_shows_each_cell(study: jid.Study) -> None:
         assert max(float(text.get_text()) for text in worst.texts) == pytest.approx(
             max(errors), rel=0.01
         )
-        with pytest.raises(jid.InputError, match="x is 'windows': not a swept setting"):
+        with pytest.raises(jid.InputError, match="x is 'windows': this setting is not swept"):
             jid.plot.sweep(study, "windows")
         with pytest.raises(jid.InputError, match="the study has no true value"):
             jid.plot.sweep(study, value="error.inertia")

@@ -94,7 +94,7 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "compare: several joints": (
         lambda b: verbs.compare(b.arm),
-        "recordings is a RobotRecording: compare of several joints takes one joint at a time, or a robot; "
+        "recordings is a RobotRecording: compare accepts one joint or a whole robot, but not several joints; "
         "compare recordings.joint(NAME) or give jid.Robot.from_urdf(path)",
     ),
     "compare: a joint's option of a servo": (
@@ -132,11 +132,11 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "load: an estimate": (
         lambda b: verbs.load(b.folder / "estimate.json"),
-        "estimate.json: this is a file of a result (estimate), no recording; jid.Result.load(path) reads it",
+        "estimate.json: this is a file of a result (estimate), not a recording; jid.Result.load(path) reads it",
     ),
     "load: a joint file": (
         lambda _: verbs.load("examples/hardware/joint.toml"),
-        "joint.toml: this is a file of a joint, no recording; jid.Joint.load(path) reads it",
+        "joint.toml: this is a file of a joint, not a recording; jid.Joint.load(path) reads it",
     ),
     "load: two files": (
         lambda _: verbs.load("a.csv", "b.csv"),
@@ -145,7 +145,7 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     "load: no file": (lambda _: verbs.load([]), "path is []: at least one file is expected"),
     "load: several joints of one": (
         lambda b: verbs.load(b.folder / "arm.csv", b.joint, joints="all"),
-        "subject is a Joint: load of several joints takes no single Joint",
+        "subject is a Joint: load of several joints cannot use a single Joint",
     ),
     "simulate: a robot": (
         lambda b: verbs.simulate(b.robot),
@@ -153,7 +153,7 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "simulate: a robot's estimate": (
         lambda b: verbs.simulate(b.robot_estimate),
-        "subject is a RobotEstimate: simulate takes one joint or servo; give recordings: their logged torques",
+        "subject is a RobotEstimate: simulate takes one joint or servo; give recordings, so that the logged torques",
     ),
     "simulate: several joints": (
         lambda b: verbs.simulate(b.joint_estimates),
@@ -181,7 +181,8 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "design: a servo's estimate": (
         lambda b: verbs.design(b.servo_estimate),
-        "subject is a ServoEstimate: design takes a Joint, or an Estimate of one joint; give its .identified joint",
+        "subject is a ServoEstimate: design takes a Joint, or an Estimate of one joint; give the servo's joint "
+        "`estimate.identified`",
     ),
     "design: a robot's estimate": (
         lambda b: verbs.design(b.robot_estimate),
@@ -205,7 +206,7 @@ CASES: dict[str, tuple[Callable[[Bench], object], str]] = {
     ),
     "export: several joints": (
         lambda b: verbs.export(b.joint_estimates, b.folder / "a.h"),
-        "source: these are the estimates of several joints (shoulder, elbow); one is expected; choose one",
+        "source: these are the estimates of several joints (shoulder, elbow); one estimate is expected; choose one",
     ),
 }
 

@@ -183,7 +183,7 @@ def _judged_study(folder: Path, known: int) -> str:
         with StudyFile(path, _HEADER, resume=True) as file:
             return "lost" if len(file.rows) < known else ""
     except jid.InputError as error:
-        return "" if "no whole line" in str(error) and not known else f"torn: {error}"
+        return "" if "no complete line" in str(error) and not known else f"torn: {error}"
 
 
 def _ran(folder: Path, acknowledge: Acknowledge) -> None:

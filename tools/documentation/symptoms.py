@@ -84,7 +84,7 @@ SYMPTOMS: Mapping[str, Symptom] = {
         ),
     ),
     "torque_saturated": Symptom(
-        "The torque has flat tops: the controller asked for more than the log shows.",
+        "The torque has flat tops: the controller requested more torque than the log shows.",
         over_time("torque", caption="The torque is at its limit."),
     ),
     "sensor_clipped": Symptom(
@@ -102,18 +102,18 @@ SYMPTOMS: Mapping[str, Symptom] = {
         ),
     ),
     "repeated_samples": Symptom(
-        "Stairs: samples repeat the previous one while the joint moves.",
+        "The signal has stairs: samples repeat the previous sample while the joint moves.",
         samples("sensor", caption="Every fifth reading is a copy.", start=1.0, stop=1.04),
     ),
     "time_jitter": Symptom(
         "The steps between time stamps scatter, although the samples were evenly spaced.",
-        steps(caption="Steps of 1 ms on average; the time stamps scatter by a fifth of that."),
+        steps(caption="Steps of 1 ms on average; the time stamps scatter by a fifth of 1 ms."),
     ),
     "noisy_velocity": Symptom(
-        "The velocity is a broad band instead of a line. The inertia comes out too small.",
+        "The velocity is a broad band instead of a line. The identified inertia is too small.",
         rate(caption="Noise of 0.03 rad/s on the velocity.", start=1.0, stop=1.5),
     ),
-    "noisy_signal": Symptom("The coefficient of an extra signal comes out too small.", windows),
+    "noisy_signal": Symptom("The identified coefficient of an extra signal is too small.", windows),
     "load_scale": Symptom(
         "With load friction, all values multiplied by one factor fit as well.", friction
     ),
@@ -121,7 +121,7 @@ SYMPTOMS: Mapping[str, Symptom] = {
         "Static friction has a large error, or its shape ends on a bound. The map shows no peak near rest.",
         friction,
     ),
-    "at_bound": Symptom("A value equals its bound; the line misses the points.", friction),
+    "at_bound": Symptom("A value equals its bound; the line does not fit the points.", friction),
     "undetermined": Symptom(
         "The line fits, but the band is wide: other values would fit as well.", friction
     ),
@@ -190,7 +190,7 @@ SYMPTOMS: Mapping[str, Symptom] = {
         "The residual follows the acceleration: a signal lags the others.",
         rate(caption="The velocity lags the position's derivative by 3 ms.", **_RATE),
     ),
-    "other_signal": Symptom("The residual follows something else, here the temperature.", windows),
+    "other_signal": Symptom("The residual follows another signal, here the temperature.", windows),
     "disturbance": Symptom(
         "The residual is large for a moment: something touched the joint.", windows
     ),
@@ -258,7 +258,7 @@ SYMPTOMS: Mapping[str, Symptom] = {
         "The torque touches zero and turns back: its sign was not recorded.",
         samples(
             "torque",
-            caption="It is never negative, whichever direction the joint moves in.",
+            caption="The torque is never negative, in both directions of motion.",
             start=1.0,
             stop=4.0,
         ),

@@ -341,7 +341,7 @@ Term find_term(std::string_view key) {
     if (row.harmonic != Harmonic::none) known += "_<order>";
     if (is_own(row)) known += "_<signal>";
   }
-  throw base::InputError("known are " + known, "term", std::string(key));
+  throw base::InputError("choose one of " + known, "term", std::string(key));
 }
 
 const Shape& find_shape(std::string_view name) {
@@ -359,7 +359,7 @@ const Model& find_model(std::string_view name) {
     if (row.name == name) return row;
     known += (known.empty() ? "" : ", ") + row.name;
   }
-  throw base::InputError("known are " + known, "model", std::string(name));
+  throw base::InputError("choose one of " + known, "model", std::string(name));
 }
 
 std::vector<std::string> model_terms(std::string_view name, bool asymmetric) {

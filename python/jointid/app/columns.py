@@ -166,7 +166,7 @@ def _facts(desk: Desk) -> None:
     heading(3, "Joint and motor")
     hints = {
         "gear_ratio": "motor angle per joint angle; needed for signals of the motor",
-        "torque_constant": "of the motor; needed for a current",
+        "torque_constant": "of the motor; needed if a current is recorded",
         "inertia": "of the drive alone, if known",
     }
     with ui.element("div").classes("fields facts"):

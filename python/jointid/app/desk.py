@@ -143,7 +143,7 @@ class Desk:
         """Do what a finding advises, and identify again."""
         again = None if self.call is None else self.call.obey(action)
         if again is None:
-            self.failure = "jointid cannot do this; do it by hand"
+            self.failure = "jointid cannot follow this advice; follow it by hand"
             self._changed("result")
             return
         self.call = again

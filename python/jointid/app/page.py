@@ -102,7 +102,7 @@ def _upload(desk: Desk, largest: int, example: Call) -> None:
         ui.button("Try an example", on_click=tried).props("outline id=example")
     ui.label(
         "A text log (.csv, .csv.gz, .txt, .tsv, .log, .dat), .npz, .mat, .parquet, .h5, .mcap, .bag or .json. "
-        "It stays on this machine. The example is joint 1 of a KUKA KR300."
+        "The file stays on this machine. The example is joint 1 of a KUKA KR300."
     ).classes("hint")
     refusal()
 

@@ -20,11 +20,11 @@ def signals_step(desk: Desk) -> Callable[[], object]:
     def draw() -> None:
         recording = desk.recording
         if recording is None or desk.call is None:
-            ui.label("They appear as soon as time and position are known.").classes("hint")
+            ui.label("The signals appear as soon as time and position are known.").classes("hint")
             return
         ui.label(
             "Select a part with the mouse, or enter its begin and end. Its windows are highlighted below, "
-            "and you can leave it out."
+            "and you can leave this part out."
         ).classes("hint")
         picture = chart(
             signals_options(recording, desk.call.left_out),

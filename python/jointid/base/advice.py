@@ -19,23 +19,21 @@ class Action:
     Parameters
     ----------
     kind : {"call", "record", "inspect"}
-        "call": call again with other arguments; a program can do this. "record": record another motion; if `function`
-        is set, it designs the motion.
-        "inspect": check the hardware, the logger or the file.
+        "call": repeat the call with other arguments; a program can do this. "record": record another motion;
+        `function`, if set, designs the motion. "inspect": check the hardware, the logger or the file.
     arguments : mapping of str to object
         Arguments to change in a call, by name, e.g. ``{"model": "stribeck"}``,
         ``{"columns": {"velocity": None}}``, ``{"parameters": {"viscous": 12.0}}``. Default: none.
-        `parameters` is merged into the call's argument, field by field of each parameter (None removes a field).
-        `columns`, `units` and `scale` of a load are merged signal by signal. Any other argument replaces the
+        `parameters` changes only the stated fields of the stated parameters; None removes a field. `columns`,
+        `units` and `scale` change only the stated signals of a call of `load`. Any other argument replaces the
         call's argument.
     text : str
-        What to record or inspect, as a phrase for a function call and a command line. For a call: its purpose, if
-        needed. Default: empty.
+        Motion to record, or thing to inspect, as a phrase. For a call: its purpose, if needed. The phrase fits a
+        function call and a command line. Default: empty.
     function : str
         Function to call: "identify" (default), "load", "compare_models", "sweep", "simulate",
-        "design_excitation" or "Joint" (arguments are then fields of the joint). For
-        "record": "next_motion", the estimate's method that designs the motion, with these arguments, or "identify"
-        without a design.
+        "design_excitation" or "Joint" (arguments are then fields of the joint). For "record": "next_motion" if this
+        method of the estimate designs the motion with these arguments, or "identify" without a design.
 
     Examples
     --------

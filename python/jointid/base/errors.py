@@ -27,12 +27,13 @@ NOT_GIVEN: Any = _NotGiven()
 
 
 class InputError(ValueError):
-    """Input that cannot be used: the reason, the place and a remedy.
+    """Error for input that cannot be used: reason, place and remedy.
 
     Parameters
     ----------
     reason : str
-        Why the input cannot be used, or what is expected; a phrase for a function call and a command line.
+        Reason why the input cannot be used, or the expected input. The phrase fits a function call and a command
+        line.
     argument : str
         Name of the argument, field, key or column. Default: no name.
     value : object
@@ -40,17 +41,17 @@ class InputError(ValueError):
     place : str
         File, row or table of the value. Default: the call.
     remedy : str, Action or tuple of these
-        What to do, if the reason does not state it. Default: none.
+        Remedy, if the reason does not state it. Default: none.
 
     Attributes
     ----------
     reason, argument, value, place, remedy
-        Same as the parameters; `remedy` is always a tuple.
+        The parameters as attributes; `remedy` is always a tuple.
 
     Examples
     --------
-    >>> str(InputError("known are ga, separable, random", argument="method", value="genetic"))
-    "method is 'genetic': known are ga, separable, random"
+    >>> str(InputError("choose one of ga, separable, random", argument="method", value="genetic"))
+    "method is 'genetic': choose one of ga, separable, random"
     """
 
     def __init__(
@@ -70,12 +71,12 @@ class InputError(ValueError):
         self.remedy = remedy if isinstance(remedy, tuple) else (remedy,)
 
     def at(self, place: str) -> InputError:
-        """Return the same error with a place before its present place.
+        """Return the same error with another place before its present place.
 
         Parameters
         ----------
         place : str
-            A file, a row or a table; a colon separates it from the present place.
+            File, row or table. A colon separates it from the present place.
         """
         inner = f": {self.place}" if self.place else ""
         return type(self)(

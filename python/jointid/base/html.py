@@ -55,7 +55,7 @@ class Html:
     __slots__ = ("_markup",)
 
     def __init__(self) -> None:
-        raise TypeError("an Html is made by element(), which escapes what it is given")
+        raise TypeError("only element() makes an Html, because element() escapes its arguments")
 
     def __str__(self) -> str:
         """The markup."""

@@ -115,12 +115,12 @@ class Result:
 
     @classmethod
     def from_json(cls, text: str) -> Result:
-        """Return the result in a JSON text. `Result.from_json` reads any kind; a subclass reads only its own kind.
+        """Return the result from a JSON text. `Result.from_json` reads any result; a subclass reads only its own kind.
 
         Parameters
         ----------
         text : str
-            From `to_json`, of this version or an older one.
+            JSON text from `to_json`, of this version or an older version.
 
         Raises
         ------
@@ -132,17 +132,18 @@ class Result:
 
     @classmethod
     def load(cls, path: str | Path) -> Result:
-        """Return the result in a file. `Result.load` reads any kind; a subclass reads only its own kind.
+        """Return the result from a file. `Result.load` reads any result; a subclass reads only its own kind.
 
         Parameters
         ----------
         path : path-like
-            File from `save`: .json, a design's .toml, or a sweep's file.
+            File of a result: .json, a design's .toml, or the output file of a sweep.
 
         Raises
         ------
         InputError
-            The file does not exist, or the errors of `from_json`; the error names the file and the place in it.
+            The file does not exist, or is invalid as in `from_json`; the error names the file and the place in the
+            file.
 
         Examples
         --------
@@ -157,7 +158,7 @@ class Result:
     def _class_of(cls, source: Path | str) -> type[KeptResult]:
         """Return the class of the result in a file or a JSON text."""
         if cls is not Result:
-            raise InputError(f"a result of the kind '{cls._KIND}' is not read from a file")
+            raise InputError(f"a result of the kind '{cls._KIND}' cannot be read from a file")
         return cast("type[KeptResult]", joined("class_of_kind")(source))
 
 
@@ -172,12 +173,12 @@ class KeptResult(Result):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the result in a JSON text.
+        """Return the result from a JSON text.
 
         Parameters
         ----------
         text : str
-            From `to_json`, of this version or an older one.
+            JSON text from `to_json`, of this version or an older version.
 
         Raises
         ------
@@ -188,31 +189,31 @@ class KeptResult(Result):
         raise NotImplementedError
 
     def save(self, path: str | Path) -> Path:
-        """Write the result to a file, completely or not at all, and return its path.
+        """Write the result to a file, completely or not at all, and return the file's path.
 
         Parameters
         ----------
         path : path-like
-            File name; the ending chooses the format. A .json file holds everything.
+            File name; its ending determines the format. A .json file contains the whole result.
 
         Raises
         ------
         InputError
-            The name has another ending, or the folder does not exist.
+            The file name has another ending, or the folder does not exist.
         OSError
-            The file cannot be written; an existing one is untouched.
+            The file cannot be written; an existing file is unchanged.
         """
         from jointid.base.files import write_whole
 
         file = require_path("path", path)
         if file.suffix != ".json":
-            raise InputError("it is saved as .json", argument="path", value=file.name)
+            raise InputError("this result is saved as .json", argument="path", value=file.name)
         write_whole(file, self.to_json().encode())
         return file
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Return the result in a .json file.
+        """Return the result from a .json file.
 
         Parameters
         ----------
@@ -221,7 +222,8 @@ class KeptResult(Result):
         Raises
         ------
         InputError
-            The file does not exist, or the errors of `from_json`; the error names the file and the place in it.
+            The file does not exist, or is invalid as in `from_json`; the error names the file and the place in the
+            file.
         """
         from jointid.base.schema import read_text
 

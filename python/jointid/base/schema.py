@@ -85,7 +85,7 @@ def read_json(text: str) -> Any:
         The text is not JSON, is nested too deeply, or is too large.
     """
     if len(text) > LARGEST:
-        raise InputError(f"too large: {len(text)} characters, at most {LARGEST} are allowed")
+        raise InputError(f"too large: {len(text)} characters; at most {LARGEST} are allowed")
     try:
         value = json.loads(text)
     except RecursionError:
@@ -121,7 +121,7 @@ def read_document(text: str, kind: str, schema: int, what: str) -> dict[str, Any
         raise InputError(f"this JSON is not {what}: its field 'kind' is not '{kind}'")
     number = Number(low=1, whole=True).read(document.get("schema"), "schema")
     if number > schema:
-        reason = f"this jointid reads schemas up to {schema}"
+        reason = f"this version of jointid reads schemas up to {schema}"
         raise InputError(reason, value=number, place="schema", remedy="update jointid")
     return document
 
@@ -204,12 +204,12 @@ class Text:
         if not isinstance(value, str):
             _refuse(place, value, "text is expected")
         if len(value) > self.longest:
-            reason = f"{len(value)} characters, at most {self.longest} are expected"
+            reason = f"the text has {len(value)} characters; at most {self.longest} are expected"
             _refuse(place, NOT_GIVEN, reason)
         if not value.isascii() and any("\ud800" <= letter <= "\udfff" for letter in value):
             _refuse(place, NOT_GIVEN, "the text has half a character, which no file can store")
         if self.known and value not in self.known:
-            _refuse(place, value, f"known are {', '.join(self.known)}")
+            _refuse(place, value, f"choose one of {', '.join(self.known)}")
         return value
 
 
@@ -296,7 +296,9 @@ class Record:
             kind = known.get(key, self.other)
             Text(longest=200).read(key, place)
             if kind is None:
-                _refuse(_inside(place, key), NOT_GIVEN, f"unknown; known are {', '.join(known)}")
+                _refuse(
+                    _inside(place, key), NOT_GIVEN, f"unknown key; choose one of {', '.join(known)}"
+                )
             result[key] = kind.read(entry, _inside(place, key))
         return result
 

@@ -16,7 +16,7 @@ def check_length(text: str, path: Path) -> None:
     """Raise `InputError` for a text longer than any TOML file of jointid."""
     if len(text) > _LONGEST:
         raise InputError(
-            f"too long for a TOML file of jointid: {len(text)} characters, at most {_LONGEST}",
+            f"too long for a TOML file of jointid: {len(text)} characters; at most {_LONGEST} are allowed",
             place=str(path),
         )
 

@@ -92,12 +92,12 @@ class Room:
         self.left -= size
         if self.left < 0:
             raise TooLargeError(
-                f"the unpacked file is larger than {self._allowed / 1e6:.0f} MB, the limit for a file of its size",
+                f"the unpacked file is larger than {self._allowed / 1e6:.0f} MB, the limit for this packed size",
                 place=str(self._path),
                 remedy=Action(
                     "call",
                     {"unpacked": ...},
-                    text="the bytes that it may hold, if you trust the file",
+                    text="the largest unpacked size in bytes, if you trust the file",
                     function="load",
                 ),
             )

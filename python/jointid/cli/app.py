@@ -16,8 +16,8 @@ _LARGEST_PORT = 65535
 def add_app(command: CommandParser) -> None:
     """Add the command's grammar."""
     command.epilog = (
-        "Only this machine can open the page. Its address contains a token that changes at each start. It needs "
-        "NiceGUI: pip install nicegui."
+        "Only this machine can open the page. Its address contains a token that changes at each start. The command "
+        "needs NiceGUI: pip install nicegui."
     )
     command.add_argument(
         "--port", type=int, default=0, help="port of the page (default: a free one)"
@@ -48,7 +48,10 @@ def serve_page(arguments: argparse.Namespace) -> None:
         )
 
     def opened(address: str) -> None:
-        print(f"jointid is served to this machine at\n{address}\nCtrl-C ends it.", flush=True)
+        print(
+            f"the page of jointid is open to this machine at\n{address}\nCtrl-C ends the command.",
+            flush=True,
+        )
         if not arguments.no_browser:
             webbrowser.open(address)
 

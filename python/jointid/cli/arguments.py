@@ -30,7 +30,7 @@ class Once(argparse.Action):
         """Keep the value."""
         if getattr(namespace, self.dest) is not None:
             raise argparse.ArgumentError(
-                self, "it is given twice, but only one file can be written"
+                self, "this option is given twice, but only one file can be written"
             )
         setattr(namespace, self.dest, values)
 
@@ -43,7 +43,7 @@ def file_kinds() -> str:
 
 
 def several_recordings(
-    command: CommandParser, *, nargs: str = "+", use: str = "read in the same way"
+    command: CommandParser, *, nargs: str = "+", use: str = "read with the same options"
 ) -> None:
     """Add the recordings and the options for reading them."""
     recordings = command.add_argument(
@@ -59,17 +59,17 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
         (
             "--column",
             "SIGNAL=HEADER",
-            "column of a signal: its header or number, none, or 1:6 for the columns of six joints; may be repeated",
+            "column of a signal: header, number, none, or 1:6 for the columns of six joints; may be repeated",
         ),
-        ("--unit", "SIGNAL=UNIT", "unit of a signal, instead of the one in the header"),
+        ("--unit", "SIGNAL=UNIT", "unit of a signal, instead of the unit in the header"),
         ("--scale", "SIGNAL=FACTOR", "factor from file units to SI"),
         (
             "--side",
             "SIGNAL=SIDE",
-            "side of the gear of a signal, e.g. velocity=motor; with --gear-ratio or --joint",
+            "side of a signal (motor or joint), e.g. velocity=motor; needs --gear-ratio or --joint",
         ),
-        ("--where", "COLUMN=VALUE", "keep only the rows with this value"),
-        ("--extra", "NAME=COLUMN", "keep a column as an extra signal of this name, for --term"),
+        ("--where", "COLUMN=VALUE", "keep only the rows with this value in this column"),
+        ("--extra", "NAME=COLUMN", "keep a column as an extra signal with this name, for --term"),
     ):
         command.add_argument(
             name, action="append", type=pair, default=[], metavar=shown, help=explanation
@@ -77,13 +77,14 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--joints",
         metavar="JOINT[,JOINT...]",
-        help="joint to read, of a file with several: number or name in the headers; identify takes several, or all",
+        help="joint to read from a file with several joints: number or name in the headers; identify accepts "
+        "several, or all",
     )
     command.add_argument(
         "--gear-ratio",
         metavar="RATIO[,RATIO...]",
-        help="motor angle per joint angle, one for each of --joints (32,45,-48); it converts columns of the motor "
-        "to the joint",
+        help="motor angle per joint angle, to convert motor columns to the joint side; for several --joints one for "
+        "each, as in 32,45,-48",
     )
     command.add_argument(
         "--rate",
@@ -94,12 +95,12 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--topic",
         metavar="TOPIC",
-        help="topic to read in a message log (.mcap, .bag, .db3); default: the only one with joints",
+        help="topic to read from a message log (.mcap, .bag, .db3); default: the only topic with joints",
     )
     command.add_argument(
         "--group",
         metavar="PATH",
-        help="group to read in an HDF5 or MATLAB 7.3 file (default: the only one)",
+        help="group to read from an HDF5 or MATLAB 7.3 file (default: the only group)",
     )
     command.add_argument(
         "--unpacked",
@@ -110,12 +111,12 @@ def reading_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--drop-copies",
         action="store_true",
-        help="leave out rows that repeat the row before, as when the logger is faster than the bus",
+        help="leave out rows that repeat the previous row, e.g. if the logger is faster than the bus",
     )
     command.add_argument(
         "--drop-invalid",
         action="store_true",
-        help="leave out damaged rows: a value is not finite, or too large for a joint",
+        help="leave out damaged rows: rows with a value that is not finite or too large for a joint",
     )
 
 
@@ -195,8 +196,8 @@ def method_argument(command: CommandParser) -> None:
     """Add the option for the method of the search."""
     command.add_argument(
         "--method",
-        help="separable (default), ga or random; options of the genetic algorithm imply ga, which takes seven times "
-        "as long with stribeck_general",
+        help="search method: separable (default), ga (genetic algorithm, implied by its options) or random; for "
+        "stribeck_general, ga takes seven times as long as separable",
     )
 
 
@@ -232,7 +233,7 @@ def models_by_joint(text: str) -> dict[str, str]:
         for name in names.split(","):
             if not (separator and name and model):
                 raise InputError(
-                    "JOINT[,JOINT...]=MODEL is expected, several divided by ;",
+                    "JOINT[,JOINT...]=MODEL is expected, or several such entries separated by ;",
                     argument="model",
                     value=part,
                 )
@@ -270,5 +271,8 @@ def numbers_by_name(argument: str, pairs: Sequence[tuple[str, str]]) -> dict[str
 def verbose_argument(command: CommandParser) -> None:
     """Add `-v`, which prints the complete report."""
     command.add_argument(
-        "-v", "--verbose", action="store_true", help="print everything, not only the answer"
+        "-v",
+        "--verbose",
+        action="store_true",
+        help="print the complete report, not only the answer",
     )

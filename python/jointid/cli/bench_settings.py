@@ -24,7 +24,7 @@ _UNITS = {
     "torque_rate": "N·m/s",
     **dict.fromkeys(("period", "settle", "cycle", "duration"), "s"),
 }
-_UNSET = {"watchdog_travel": "the coasting and a share of the window"}
+_UNSET = {"watchdog_travel": "the coasting distance plus a share of the window"}
 _GAINS = ("bandwidth", "boundary", "stiffness", "damping")
 _SESSION = ("period", "approach_velocity", "settle")
 

@@ -116,7 +116,7 @@ def _filled(advised: Mapping[str, Any]) -> dict[str, Any] | None:
 def _of_all_joints(error: InputError, merged: Mapping[str, Any]) -> tuple[str | Action, ...]:
     """Return the other advice for a file with several joints: all of them, with separate gear ratios if needed."""
     ratio = {name: merged[name] for name in ("gear_ratio",) if name in merged}
-    own = "; one ratio for each, comma-separated" * bool(ratio)
+    own = "; one ratio for each joint, separated by commas" * bool(ratio)
     return tuple(
         Action("call", {**each.arguments, **ratio}, f"{each.text}{own}", each.function)
         for each in error.remedy[1:]

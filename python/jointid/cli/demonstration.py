@@ -24,11 +24,12 @@ class Demonstration:
     Attributes
     ----------
     recording : Recording
-        Joint 1 of a KUKA KR300, with the Coriolis torque and the inertia over the pose of its authors' model.
+        Recording of joint 1 of a KUKA KR300. It includes the Coriolis torque and the inertia at each pose, from the
+        authors' model.
     joint : Joint
-        Known values of the joint, and its model.
+        Joint with its known values and its model.
     published : mapping of str to float
-        Values by the authors of the log (SI).
+        Parameter values that the authors of the log published (SI units).
 
     Examples
     --------

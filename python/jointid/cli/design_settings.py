@@ -82,7 +82,7 @@ def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
     low, high = session.position
     if limits.position[0] < low or limits.position[1] > high:
         raise InputError(
-            f"the joint file's session stops at {low:g} to {high:g}",
+            f"the session of the joint file allows only {low:g} to {high:g}",
             argument="position",
             value=limits.position,
         )
@@ -90,7 +90,9 @@ def _check_session(limits: MotionLimits, session: SessionLimits) -> None:
         stated, allowed = getattr(limits, name), getattr(session, name)
         if stated > allowed:
             raise InputError(
-                f"the joint file's session stops at {allowed:g}", argument=name, value=stated
+                f"the session of the joint file allows at most {allowed:g}",
+                argument=name,
+                value=stated,
             )
 
 
@@ -121,7 +123,7 @@ def controller_for(
     if "coulomb" not in found.asdict():
         if believe is not None:
             raise InputError(
-                f"the controller {law_name(found)} compensates no friction", argument="believe"
+                f"the controller {law_name(found)} does not compensate friction", argument="believe"
             )
         return found
     chosen = {key: found.asdict()[key] for key, _ in gains}
@@ -201,7 +203,9 @@ def _numbers(argument: str, text: str, count: int, unit: str) -> tuple[float, ..
     parts = [part.strip() for part in text.split(",")]
     if unit and any(part.endswith("deg") for part in parts):
         raise InputError(
-            f"this is not an angle; a value in {unit} is expected", argument=argument, value=text
+            f"this quantity is not an angle; a value in {unit} is expected",
+            argument=argument,
+            value=text,
         )
     values = [number_or_angle(part) for part in parts]
     if len(values) != count or any(isinstance(value, str) for value in values):

@@ -41,12 +41,12 @@ def add_design(design: CommandParser) -> None:
         "--after",
         type=Path,
         metavar="ESTIMATE",
-        help="estimate (.json): design what to record next, from what its recordings already show",
+        help="estimate (.json): design the next motion, based on what the estimate's recordings already show",
     )
     design.add_argument(
         "--after-joint",
         metavar="NAME",
-        help="joint to take, if the file has the estimates of several joints",
+        help="joint to use, if the file has the estimates of several joints",
     )
     design.add_argument(
         "--duration",
@@ -57,12 +57,13 @@ def add_design(design: CommandParser) -> None:
         (
             "--position",
             "LOW,HIGH",
-            "position window [rad], or as -60deg,60deg; default: nine tenths of the file's; with --after: as recorded",
+            "position window [rad], or as -60deg,60deg; default: nine tenths of the joint file's window; with "
+            "--after: as recorded",
         ),
         (
             "--velocity",
             "LIMIT",
-            "largest velocity [rad/s], or as 200deg; default: nine tenths of the file's",
+            "largest velocity [rad/s], or as 200deg; default: nine tenths of the joint file's limit",
         ),
         (
             "--acceleration",
@@ -72,7 +73,7 @@ def add_design(design: CommandParser) -> None:
         (
             "--torque",
             "LIMIT",
-            "largest torque of the drive at the output [N·m]; default: the file's",
+            "largest torque of the drive at the output [N·m]; default: the joint file's limit",
         ),
         (
             "--sensor-range",
@@ -102,14 +103,14 @@ def _believed(design: argparse.ArgumentParser) -> None:
     )
     design.add_argument(
         "--controller",
-        help="controller, as in simulate; default: that of [session.controller], or adaptive_robust without torque "
-        "feedback",
+        help="controller, as in simulate; default: [session.controller] of the joint file, otherwise adaptive_robust "
+        "without torque feedback",
     )
     design.add_argument(
         "--believe",
         type=Path,
         metavar="JOINT",
-        help="joint file with the parameters the controller assumes; default: this joint's",
+        help="joint file with the parameters that the controller assumes; default: this joint's file",
     )
     for name, explanation in (
         ("--gain", "a setting of the controller; may be repeated"),
@@ -124,7 +125,7 @@ def _believed(design: argparse.ArgumentParser) -> None:
     design.add_argument(
         "--control-period",
         type=decimal,
-        help="time between two commands [s]; default: the session's, or 0.001",
+        help="time between two commands [s]; default: the session's period, or 0.001",
     )
 
 
@@ -134,21 +135,23 @@ def _sought(design: argparse.ArgumentParser) -> None:
         "--parameter",
         action="append",
         metavar="NAME",
-        help="parameter that the motion must determine (default: all that are identified); may be repeated",
+        help="parameter that the motion must determine (default: all identified parameters); may be repeated",
     )
     design.add_argument(
         "--criterion",
         default="worst",
-        help="error to minimise: worst (default), the largest relative error; determinant, all errors together",
+        help="error to minimise: worst (largest relative error, default) or determinant (all errors together)",
     )
     design.add_argument("--evaluations", type=whole, help="number of motions to try (default 3600)")
     design.add_argument(
-        "--joints", type=whole, help="number of joints drawn from the prior (default 4)"
+        "--joints",
+        type=whole,
+        help="number of simulated joints, drawn from the ranges of --prior (default 4)",
     )
     design.add_argument(
         "--rehearsals",
         type=whole,
-        help="number of simulated recordings that give the errors (default 256)",
+        help="number of simulated recordings from which the errors are computed (default 256)",
     )
     design.add_argument("--seed", type=whole_seed, default=0, help="seed of the search (default 0)")
     design.add_argument(
@@ -237,7 +240,7 @@ def _estimate(arguments: argparse.Namespace) -> Estimate | None:
     if arguments.after is None:
         if joint is not None:
             raise InputError(
-                "this names a joint of --after, which is not given",
+                "this option names a joint of --after, but --after is not given",
                 argument="after_joint",
                 value=joint,
             )

@@ -18,7 +18,7 @@ def add_emulate(emulate: argparse.ArgumentParser) -> None:
         "examples:\n"
         "  jointid emulate joint.toml --interface socketcan --channel vcan0\n"
         "  jointid emulate joint.toml --interface udp_multicast --channel 239.74.163.2 --duration 60\n"
-        "the joint file has a table [session.emulated]; it runs in real time until Ctrl-C"
+        "the joint file needs a table [session.emulated]; the emulation runs in real time until Ctrl-C"
     )
     emulate.add_argument("joint", type=Path, help="joint file (.toml) with [session.emulated]")
     emulate.add_argument(
@@ -26,7 +26,7 @@ def add_emulate(emulate: argparse.ArgumentParser) -> None:
     )
     emulate.add_argument("--channel", help="channel of the interface; default: from the joint file")
     emulate.add_argument(
-        "--duration", type=decimal, help="how long to run [s]; default: until Ctrl-C"
+        "--duration", type=decimal, help="duration of the emulation [s]; default: until Ctrl-C"
     )
     emulate.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the sensor's noise (default 0)"
@@ -40,7 +40,7 @@ def add_emulate(emulate: argparse.ArgumentParser) -> None:
         "--rest",
         type=decimal,
         default=0.0,
-        help="interval between two wake-ups [s], for a slow machine; frames are late by as much (default 0)",
+        help="interval between two wake-ups [s], for a slow machine; frames can be late by this interval (default 0)",
     )
 
 
@@ -100,7 +100,7 @@ def _check_reached(interface: str, joint: Path) -> None:
     """Refuse a bus that no other program can reach."""
     if interface == "virtual":
         raise InputError(
-            "python-can's virtual bus ends with this process, so no session could reach the drive",
+            "python-can's virtual bus exists only inside this process, so no session can reach the drive",
             argument="interface",
             value=interface,
             remedy=f"jointid emulate {joint} --interface udp_multicast --channel 239.74.163.2",

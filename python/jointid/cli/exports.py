@@ -26,38 +26,38 @@ def add_export(export: argparse.ArgumentParser) -> None:
         "  jointid export estimate.json --to joint_friction.h\n"
         "  jointid export joint.toml --to joint.st\n"
         "  jointid export estimate.json --to arm.xml --into arm.xml --joint-name shoulder --approximate\n"
-        "an estimate (.json) contains the standard errors, and the file states them; a joint file has none"
+        "the written file states the standard errors of an estimate (.json); a joint file has no standard errors"
     )
     export.add_argument(
         "source",
         type=Path,
-        help="estimate (.json) of a joint or of a robot, or joint file (.toml) with its parameters' values",
+        help="estimate (.json) of a joint or of a robot, or joint file (.toml) with parameter values",
     )
     export.add_argument("--to", type=Path, required=True, help=f"file to write: {kinds}")
     export.add_argument(
         "--target",
         metavar="NAME",
-        help=f"target, if the ending {endings_text()} does not choose it: "
+        help=f"target, if the file's ending ({endings_text()}) does not choose the target: "
         + ", ".join(each.name for each in TARGETS),
     )
     export.add_argument(
         "--joints",
         metavar="JOINT",
-        help="joint to take, if the file has the estimates of several joints",
+        help="joint to use, if the file has the estimates of several joints",
     )
     export.add_argument(
         "--into",
         type=Path,
-        help="MuJoCo or URDF file to edit: its joint gets the values, the rest stays; --to may be the same file",
+        help="MuJoCo or URDF file to edit: only the values of this joint change; --to may be the same file",
     )
     export.add_argument(
-        "--joint-name", help="name of the joint in --into (default: the joint's own)"
+        "--joint-name", help="name of the joint in --into (default: the joint's own name)"
     )
     export.add_argument(
         "--approximate",
         action="store_true",
-        help="for a target with only Coulomb and viscous friction: write the nearest, and state in the file what is "
-        "lost",
+        help="for a target with only Coulomb and viscous friction: write the nearest friction of this form, and state "
+        "the difference in the file",
     )
     export.add_argument(
         "--inertia",
@@ -67,7 +67,7 @@ def add_export(export: argparse.ArgumentParser) -> None:
     export.add_argument(
         "--speed",
         type=float,
-        help="largest speed of tables and of the friction by --approximate, rad/s or m/s (default: as recorded)",
+        help="largest speed [rad/s or m/s] of tables and of --approximate (default: as recorded)",
     )
     export.add_argument("--json", action="store_true", help="print the outcome as JSON")
 
@@ -85,7 +85,7 @@ def export(arguments: argparse.Namespace) -> None:
     source: Path = arguments.source
     if source.suffix.lower() != ".json" and arguments.joints is not None:
         raise InputError(
-            "a joint file has one joint",
+            "a joint file holds only one joint",
             argument="joints",
             value=arguments.joints,
             place=str(source),
@@ -102,9 +102,9 @@ def export(arguments: argparse.Namespace) -> None:
     blocking = [each for each in findings if each.severity == "blocking"]
     if blocking:  # identify does not write such a joint file either: a controller would use it
         raise InputError(
-            f"the finding {blocking[0].code} is blocking: its values cannot be used",
+            f"the finding {blocking[0].code} is blocking: the values of this estimate cannot be used",
             place=str(source),
-            remedy="see its report",
+            remedy="see the estimate's report",
         )
     path = exporting.export(
         value,

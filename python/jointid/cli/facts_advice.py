@@ -85,7 +85,7 @@ def _act(file: str, lines: list[str], key: str, value: str) -> str:
         return f"change {_numbers(span)} of {file} to {line}"
     tables = _tables(lines, key)
     if tables:
-        return f"delete {' and '.join(map(_numbers, tables))} of {file} and write {line} as its first line"
+        return f"delete {' and '.join(map(_numbers, tables))} of {file} and write {line} as the first line of this file"
     return f"write {line} as the first line of {file}"
 
 

@@ -42,9 +42,9 @@ def printed_map(paths: Sequence[Path], arguments: argparse.Namespace, error: Inp
         option = word.partition("=")[0]
         if option.startswith("--") and option not in _USED:
             raise InputError(
-                "a table of steady speeds and torques gives a friction map, which has no such option",
+                "this file is a table of steady speeds and torques; its friction map has no such option",
                 place=option,
-                remedy="leave it out; --json prints the map for programs",
+                remedy="leave this option out; --json prints the map for programs",
             ) from None
     if arguments.json:
         import json

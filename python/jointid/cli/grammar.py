@@ -48,27 +48,29 @@ def add_identify(identify: CommandParser) -> None:
         "--model",
         metavar="NAME[:OPTION[=VALUE]]",
         help=(
-            f"friction model: {', '.join(model_names())}, or auto (default if the joint has no model): the best on "
-            "held-out torque among the first two, with or without gravity; options follow, as in "
-            "stribeck:asymmetric:ripple=2,4; with --robot also JOINT[,JOINT...]=MODEL, several divided by a semicolon"
+            f"friction model: {', '.join(model_names())} or auto. Default: the joint's own model, otherwise auto. auto "
+            "chooses the first or second model, with or without gravity, by the residual of held-out torque. Options "
+            "follow the name, as in stribeck:asymmetric:ripple=2,4. With --robot, each joint can have its own model: "
+            "JOINT[,JOINT...]=MODEL, separated by semicolons"
         ),
     )
     _robot_arguments(identify)
     identify.add_argument(
         "--inertia",
         metavar="VALUE|MODE",
-        help="inertia of the drive alone at the output [kg·m²]; with --robot: urdf (default), scaled or free, how "
-        "the links' inertias are identified",
+        help="inertia of the drive alone at the output [kg·m²]; with --robot: inertias of the links, "
+        "urdf (default), scaled or free",
     )
     identify.add_argument(
         "--selftest",
         action="store_true",
-        help="self-test: simulate the recorded motion with the result and its noise, and identify it again",
+        help="self-test: simulate the recorded motion with the identified values and noise, "
+        "then identify this simulation",
     )
     identify.add_argument(
         "--causes",
         action="store_true",
-        help="list the causes of the residual: what each explains, and which values it moves",
+        help="list the causes of the residual, the share that each explains, and the values that each changes",
     )
     identify.add_argument(
         "--by",
@@ -78,10 +80,14 @@ def add_identify(identify: CommandParser) -> None:
     identify.add_argument(
         "--rollout",
         action="store_true",
-        help="for a servo or a robot: simulate each run along its log and print the difference in position",
+        help="for a servo or a robot: simulate each recorded run, and print the difference from the recorded position",
     )
-    identify.add_argument("--population", type=whole, help="individuals of the genetic algorithm")
-    identify.add_argument("--generations", type=whole, help="generations of the genetic algorithm")
+    identify.add_argument(
+        "--population", type=whole, help="number of individuals in the genetic algorithm"
+    )
+    identify.add_argument(
+        "--generations", type=whole, help="number of generations in the genetic algorithm"
+    )
     identify.add_argument(
         "--checkpoint", type=Path, help="write the state of a long search to this file"
     )
@@ -97,7 +103,7 @@ def add_identify(identify: CommandParser) -> None:
     identify.add_argument(
         "--require",
         choices=LEVELS,
-        help="lowest verdict to accept, usable or care (usable with care); a worse one gives exit code 4",
+        help="lowest accepted verdict: usable or care (usable with care); a worse verdict gives exit code 4",
     )
     _output_arguments(identify)
 
@@ -128,7 +134,7 @@ def add_compare(compare: CommandParser) -> None:
         "  jointid compare run.csv --model stribeck --model stribeck:ripple=2 --folds 8 --json\n"
         "  jointid compare monday.csv tuesday.csv wednesday.csv --joint joint.toml --save joint.toml\n"
         "  jointid compare arm.csv --robot arm.urdf --facts robot.toml --report arm.html   (all joints together)\n"
-        "one recording is cut into blocks; with several recordings, whole recordings are held out"
+        "one recording is cut into blocks, which are held out; with several recordings, whole recordings are held out"
     )
     several_recordings(compare)
     _identification_arguments(compare)
@@ -148,7 +154,7 @@ def add_compare(compare: CommandParser) -> None:
         help="a model to compare; may be repeated; default: the models that suit the recording",
     )
     compare.add_argument(
-        "--folds", type=whole, default=5, help="number of parts, held out in turn (default 5)"
+        "--folds", type=whole, default=5, help="number of parts, each held out once (default 5)"
     )
     _output_arguments(compare)
 
@@ -165,7 +171,7 @@ def add_report(report: CommandParser) -> None:
     report.add_argument(
         "--joints",
         metavar="JOINT",
-        help="joint to take, if the file has the estimates of several joints",
+        help="joint to use, if the file has the estimates of several joints",
     )
     report.add_argument(
         "--output",

@@ -32,11 +32,14 @@ def fact_arguments(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--torque-constant",
         metavar="VALUE[,VALUE...]",
-        help="torque constant of the motor [N·m/A], for a recorded current; for several joints, one for each",
+        help="torque constant of the motor [N·m/A], for a recorded current; one value for each joint",
     )
     for option, explanation in (
-        ("--rotor-inertia", "inertia of the motor and all that turns with it, motor side [kg·m²]"),
-        ("--mass", "mass of the link [kg], with --centre-of-mass: its weight is then known"),
+        (
+            "--rotor-inertia",
+            "inertia of the motor and all parts that turn with it, motor side [kg·m²]",
+        ),
+        ("--mass", "mass of the link [kg]; with --centre-of-mass, the weight of the link is known"),
         ("--centre-of-mass", "distance of the link's centre of mass from the axis [m]"),
     ):
         command.add_argument(option, type=decimal, metavar="VALUE", help=explanation)
@@ -202,14 +205,16 @@ def _inertia(arguments: argparse.Namespace) -> float | None:
     stated = getattr(arguments, "inertia", None)
     if isinstance(stated, list):  # compare --robot accepts several
         if len(stated) > 1:
-            raise InputError("give one inertia for one joint", argument="inertia", value=stated)
+            raise InputError(
+                "state only one inertia for one joint", argument="inertia", value=stated
+            )
         stated = stated[0]
     if stated is None:
         return None
     number = number_or_text(stated)
     if isinstance(number, str):
         raise InputError(
-            "of one joint a number [kg·m²] is expected; of a robot --robot names the URDF",
+            "for one joint, a number [kg·m²] is expected; for a robot, name its URDF with --robot",
             argument="inertia",
             value=stated,
         )

@@ -123,18 +123,18 @@ def _check(arguments: argparse.Namespace) -> None:
     """Refuse options that are valid for one joint only, before the work."""
     if len(arguments.recordings) > 1:
         raise InputError(
-            "several joints are identified from one recording",
+            "several joints can only be identified from one recording",
             argument="joints",
             value=arguments.joints,
         )
     for name in _OF_ONE_JOINT:
         if getattr(arguments, name) not in (None, False):
             raise InputError(
-                "this is for one joint; name it with --joints",
+                "this option is for one joint; name the joint with --joints",
                 argument="n" if name == "bootstrap" else name,
             )
     if arguments.drop_copies:
-        raise InputError("this is for one joint", argument="drop_copies", value=True)
+        raise InputError("this option is for one joint", argument="drop_copies", value=True)
     save = arguments.save
     if save is not None and save.suffix != ".json":
         raise InputError(

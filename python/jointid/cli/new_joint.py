@@ -41,13 +41,13 @@ def add_new(new: CommandParser) -> None:
         "examples:\n  jointid new joint.toml\n"
         "  jointid new joint.toml run.csv --gear-ratio 101 --rotor-inertia 2.5e-4\n"
         "  jointid new elbow.toml arm.csv --joints 3 --gear-ratio -48 --name elbow\n"
-        "at a terminal it asks for the facts that most joints need; Enter skips a fact, which becomes a comment"
+        "at a terminal, the command asks for the facts that most joints need; Enter skips a fact (written as a comment)"
     )
-    new.add_argument("file", type=Path, help="joint file to write (.toml); it must not exist")
+    new.add_argument("file", type=Path, help="joint file to write (.toml); the file must not exist")
     recording = new.add_argument("recording", type=Path, nargs="?", help="recording of the joint")
     new.help_later(
         recording,
-        lambda: f"recording of the joint, for its kind, sensor, columns and units: {file_kinds()}",
+        lambda: f"recording that gives the joint's kind, sensor, columns and units: {file_kinds()}",
     )
     new.add_argument("--name", help="name of the joint (default: the file's name)")
     new.add_argument(
@@ -169,7 +169,7 @@ def _read(arguments: argparse.Namespace) -> tuple[Recording | None, list[str]]:
     except InputError as error:
         advised = _obeyed(arguments, error)
         (recording,) = load_all([arguments.recording], arguments)
-        found.append(f"proposed: {advised}; check whether that is right")
+        found.append(f"proposed: {advised}; check whether this is right")
     from jointid.recording.plausible_units import proposed_units
 
     for signal, proposed in proposed_units(recording).items():

@@ -80,7 +80,7 @@ def check_distinct(arguments: argparse.Namespace) -> None:
                     continue
                 if Path(path).is_file() and output.exists() and output.samefile(path):
                     raise InputError(
-                        "the command reads this file and would overwrite it; give another name",
+                        "the command reads this file and cannot overwrite it; give another name",
                         argument=written,
                         value=output,
                     )
@@ -125,7 +125,7 @@ def check_folder(argument: str, path: Path | None) -> None:
         # In such a folder, "no such file" refers to the file to be written.
         reason = f" ({error.strerror})" if error.strerror and error.errno != errno.ENOENT else ""
         raise InputError(
-            f"nothing can be written in the folder {path.parent}{reason}",
+            f"no file can be written in the folder {path.parent}{reason}",
             argument=argument,
             value=path,
             remedy="give another name",

@@ -32,7 +32,9 @@ def _formatter(prog: str) -> argparse.HelpFormatter:
 
 
 # Options of another command, with a hint for this one.
-_ELSEWHERE = {"--by": "--where COLUMN=VALUE reads one run; identify reads a servo's with --by"}
+_ELSEWHERE = {
+    "--by": "read one run with --where COLUMN=VALUE; only identify has --by, for the runs of a servo"
+}
 _NEGATIVE = re.compile(
     r"-\.?\d"
 )  # -1, -.5, -60deg,60deg are values, because no option begins with a digit

@@ -27,9 +27,9 @@ def add_check(check: argparse.ArgumentParser) -> None:
         "examples:\n"
         "  jointid check joint.toml\n"
         "  jointid check joint.toml --emulate\n"
-        "it only reads; the motor stays off. Exit code 3: the joint must not be moved yet."
+        "the command only reads; the motor stays off. Exit code 3: the joint must not be moved yet."
     )
-    _add_common(check, "print what was found as JSON")
+    _add_common(check, "print the report as JSON")
 
 
 def add_first_motion(first: argparse.ArgumentParser) -> None:
@@ -43,31 +43,31 @@ def add_first_motion(first: argparse.ArgumentParser) -> None:
         "First read docs/safety.md, and run `jointid check`: it shows how far the joint will move,\n"
         "0.4°, or 40 counts of a coarse encoder. Exit code 3: the bench is refused."
     )
-    _add_common(first, "print passed, reason, travel, torques, signs and what is unchecked as JSON")
+    _add_common(first, "print result, reason, travel, torques, signs and unchecked items as JSON")
     first.add_argument("--yes", action="store_true", help="do not ask before a real joint moves")
     first.add_argument(
         "--largest-torque",
         type=decimal,
-        help="largest torque while nothing moves [N·m, by the joint file's constants]; default: five times the "
-        "friction in the joint file, at most the torque limit",
+        help="largest torque until the joint first moves [N·m, by the joint file's constants]; default: five times the "
+        "friction in the joint file, but not above the torque limit",
     )
     first.add_argument(
         "--unknown-friction",
         action="store_true",
-        help="the joint file's friction is only a guess: do not check the scales with it",
+        help="the joint file's friction is only a guess: do not check gear ratio and torque constant with this value",
     )
     first.add_argument(
         "--watchdog",
         action="store_true",
-        help="at the end, stop sending at zero torque; the drive must then stop its motor",
+        help="at the end, command zero torque and stop sending; the drive must then stop its motor",
     )
-    first.add_argument("--quiet", action="store_true", help="print no line for each step")
+    first.add_argument("--quiet", action="store_true", help="do not print the steps")
 
 
 def _add_common(command: Any, printed: str) -> None:
     command.add_argument("joint", type=Path, help="joint file (.toml) with a table [session]")
     command.add_argument(
-        "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
+        "--emulate", action="store_true", help="use an emulated drive and joint on virtual time"
     )
     command.add_argument("--json", action="store_true", help=printed)
     command.add_argument(
@@ -196,7 +196,7 @@ def missing_certificate(joint_file: Path, bench: Bench) -> str:
     return (
         "this bench is not certified: "
         + "; ".join(objections)
-        + "; run `jointid first-motion` first, or give --force"
+        + "; run `jointid first-motion` first, or use --force"
     )
 
 
@@ -232,11 +232,12 @@ def _show(line: str) -> None:
 def _agreed(bench: Bench, sizes: Sizes) -> bool:
     """Return whether the user agrees that the real joint moves."""
     print(
-        f"'{bench.joint.name}' will move by {sizes}, over {bench.address}. With a wrong gear ratio it moves farther.",
+        f"joint '{bench.joint.name}' ({bench.address}) will move by {sizes}. With a wrong gear ratio, the joint "
+        "moves farther.",
         file=sys.stderr,
     )
     if not sys.stdin.isatty():
-        print("give --yes to start without being asked", file=sys.stderr)
+        print("use --yes to start without this question", file=sys.stderr)
         return False
     try:
         return (

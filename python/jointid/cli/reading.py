@@ -43,7 +43,7 @@ def load_all(
     several, ratios = joints_wanted(arguments), numbers_of_joints(arguments, "gear_ratio")
     if several is not None and len(several) != 1:
         raise InputError(
-            "one joint is expected here; identify takes several",
+            "this command reads one joint; only identify reads several",
             argument="joints",
             value=arguments.joints,
         )

@@ -38,7 +38,7 @@ def required(verdicts: Mapping[str, Verdict | None], arguments: argparse.Namespa
             reason = f": {verdict.reasons[0]}" if verdict is not None and verdict.reasons else ""
             subject = f"the verdict on {name}" if name else "the verdict"
             print(
-                f'jointid identify: {subject} is "{level}", and --require asks for "{asked}"{reason}',
+                f'jointid identify: {subject} is "{level}", but --require needs "{asked}"{reason}',
                 file=sys.stderr,
             )
             code = WORSE

@@ -176,13 +176,13 @@ def _checked(arguments: argparse.Namespace) -> dict[str, Any]:
     for name in _OF_ONE_JOINT:
         if getattr(arguments, name, None) not in (None, False):
             raise InputError(
-                "this is for one joint, not for a robot",
+                "this option is for one joint, not for a robot",
                 argument=f"ga.{name}" if name in ("population", "generations") else name,
             )
     of_one = [name for name in options if name not in (*own, *_READ)]
     copies = ["drop_copies"] * bool(getattr(arguments, "drop_copies", False))
     for name in (*of_one, *copies):
-        raise InputError("this is for one joint, not for a robot", argument=name)
+        raise InputError("this option is for one joint, not for a robot", argument=name)
     save = arguments.save
     if save is not None and save.suffix != ".json":
         raise InputError("a robot's estimate is saved as .json", argument="save", value=save)

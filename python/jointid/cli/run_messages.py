@@ -12,8 +12,8 @@ if TYPE_CHECKING:
 
 REFUSED, STOPPED, DONE = "refused", "stopped", "done"
 _MOTOR = {
-    True: "the motor was seen off",
-    False: "THE MOTOR WAS NOT SEEN OFF",
+    True: "the drive confirmed that the motor is off",
+    False: "THE DRIVE DID NOT CONFIRM THAT THE MOTOR IS OFF",
     None: "this drive does not report whether its motor is off",
 }
 _NEVER_ON = "the motor has not been on"

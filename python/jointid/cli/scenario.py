@@ -33,7 +33,7 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
         "--believe",
         type=Path,
         metavar="JOINT",
-        help="joint file with the parameters the controller assumes; default: the true ones",
+        help="joint file with the parameters that the controller assumes; default: the true parameters",
     )
     command.add_argument(
         "--trajectory",
@@ -60,7 +60,9 @@ def scenario_arguments(command: argparse.ArgumentParser) -> None:
         help="time between two commands [s] (default 0.001)",
     )
     command.add_argument(
-        "--duration", type=decimal, help="duration of the motion [s]; default: the trajectory's"
+        "--duration",
+        type=decimal,
+        help="duration of the motion [s]; default: the duration of the trajectory",
     )
 
 
@@ -88,7 +90,8 @@ def scenario_of(joint_file: Path, arguments: argparse.Namespace) -> Scenario:
     if "coulomb" not in scenario.controller.asdict():
         if arguments.believe is not None:
             raise InputError(
-                f"the controller {arguments.controller} compensates no friction", argument="believe"
+                f"the controller {arguments.controller} does not compensate friction",
+                argument="believe",
             )
         return scenario
     assumed = joint if arguments.believe is None else Joint.load(arguments.believe)
@@ -117,7 +120,7 @@ def controller_of(name: str, gains: Sequence[tuple[str, str]]) -> Controller:
     chosen = checked_values("gain", gains, usual)
     if "stiffness" in usual and not chosen.get("stiffness"):
         raise InputError(
-            "it needs a stiffness [N·m/rad], and usually damping",
+            "this controller needs a stiffness [N·m/rad], and usually damping",
             argument="controller",
             value=name,
             remedy="add --gain stiffness=VALUE",
@@ -197,7 +200,7 @@ def _check_names(argument: str, chosen: Mapping[str, Any], known: Collection[str
             close = closest(name, [*known], cutoff=0.75)  # a lower cutoff matches unrelated names
             raise InputError(
                 f"there is no {name}; "
-                + (f"did you mean '{close}'?" if close else f"known are {', '.join(known)}"),
+                + (f"did you mean '{close}'?" if close else f"choose one of {', '.join(known)}"),
                 argument=f"{argument}.{name}",
                 value=value,
             )

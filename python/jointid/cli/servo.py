@@ -73,7 +73,7 @@ def identify_runs(arguments: argparse.Namespace, joint: Joint) -> int:
     if arguments.verbose:
         print(text_report(found, wording.of_command))
         if rolled is not None:
-            print(f"\nRollouts of the closed loop, against the logs\n{rolled.report()}")
+            print(f"\nRollouts of the closed loop, compared with the logs\n{rolled.report()}")
     else:
         error = None if rolled is None else rolled.median
         print(answer(found, wording.of_command, wording.saved_file, error))
@@ -133,7 +133,7 @@ def _load(arguments: argparse.Namespace, drive: VoltageDrive) -> list[Recording]
             drops = {name: getattr(arguments, name) for name in ("drop_copies", "drop_invalid")}
             return [load(path, extra=first, **drops, **reading) for path in paths]
         if reading.pop("where"):
-            raise InputError("runs of one file are read whole", argument="where")
+            raise InputError("with --by, all rows of each run are read", argument="where")
         return [
             run
             for path in paths

@@ -47,7 +47,7 @@ def add_run(run: argparse.ArgumentParser) -> None:
         "--cycles", type=whole, default=2, help="number of cycles (default 2); 0: only record"
     )
     run.add_argument(
-        "--emulate", action="store_true", help="an emulated drive and joint on virtual time"
+        "--emulate", action="store_true", help="use an emulated drive and joint on virtual time"
     )
     run.add_argument(
         "--dry-run", action="store_true", help="only run the pre-flight checks; the motor stays off"
@@ -190,11 +190,13 @@ def _check(arguments: argparse.Namespace) -> None:
         raise InputError("at least 0 is expected", argument="cycles", value=arguments.cycles)
     if arguments.cycles == 0 and arguments.save is not None:
         raise InputError(
-            "with 0 cycles nothing is identified", argument="save", value=arguments.save
+            "with 0 cycles, nothing is identified and no joint file is written",
+            argument="save",
+            value=arguments.save,
         )
     if arguments.cycles == 0 and arguments.output is None and not arguments.dry_run:
         raise InputError(
-            "with 0 cycles the session only records, but no folder for the recording is given",
+            "with 0 cycles, the session only records, but no folder for the recording is given",
             argument="cycles",
             value=arguments.cycles,
             remedy="give a folder: --output runs",
@@ -207,7 +209,7 @@ def _check(arguments: argparse.Namespace) -> None:
         check_output_folder("output", output)
         if output.is_dir() and any(output.iterdir()):
             raise InputError(
-                "the folder is not empty, and a session overwrites nothing",
+                "the folder is not empty, and a session does not overwrite files",
                 argument="output",
                 value=output,
                 remedy="give another name",
@@ -224,7 +226,8 @@ def _check_motion(arguments: argparse.Namespace) -> None:
     motion = read_document(arguments.joint)["session"]["trajectory"].get("file", "/")
     if not Path(motion).is_absolute():
         raise InputError(
-            f"the motion file {motion} is in the folder of {arguments.joint}, and its session would not find it",
+            f"the motion file {motion} is in the folder of {arguments.joint}; a joint file in another folder "
+            "would not find this motion file",
             argument="save",
             value=save,
             remedy="give a name in the same folder",
@@ -252,12 +255,12 @@ def _agreed(bench: Bench) -> bool:
     """Return whether the user agrees that the real joint moves."""
     low, high = bench.limits.position
     print(
-        f"'{bench.joint.name}' will move between {low:.3g} and {high:.3g} rad with up to "
-        f"{bench.limits.torque:.4g} N·m, about {bench.trajectory.duration:.3g} s per run, over {bench.address}.",
+        f"joint '{bench.joint.name}' ({bench.address}) will move between {low:.3g} and {high:.3g} rad with up to "
+        f"{bench.limits.torque:.4g} N·m, about {bench.trajectory.duration:.3g} s per run.",
         file=sys.stderr,
     )
     if not sys.stdin.isatty():
-        print("give --yes to start without being asked", file=sys.stderr)
+        print("use --yes to start without this question", file=sys.stderr)
         return False
     return _yes("Is the space free, and the emergency stop at hand? [yes/no] ")
 

@@ -21,7 +21,7 @@ def add_simulate(simulate: argparse.ArgumentParser) -> None:
         "      --trajectory sine:amplitude=0.3,frequency=0.5,duration=10 --output run.csv\n"
         "the joint file needs a value for each parameter, as `identify --save joint.toml` writes them"
     )
-    simulate.add_argument("joint", type=Path, help="joint file (.toml) with its parameters' values")
+    simulate.add_argument("joint", type=Path, help="joint file (.toml) with parameter values")
     scenario_arguments(simulate)
     simulate.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the sensors' noise (default 0)"
@@ -58,7 +58,7 @@ def simulate(arguments: argparse.Namespace) -> None:
     print(f"{len(recording)} samples in {recording.duration:g} s")
     if tracked:
         print(
-            f"tracking error after the first sixth: rms {outcome['tracking_error']:.3g} {unit}, "
+            f"tracking error, without the first sixth of the motion: rms {outcome['tracking_error']:.3g} {unit}, "
             f"largest {outcome['peak_error']:.3g} {unit}"
         )
     print(f"largest velocity {outcome['peak_velocity']:.3g} {unit}/s")

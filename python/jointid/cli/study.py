@@ -65,7 +65,7 @@ def add_sweep(sweep: CommandParser) -> None:
     sweep.add_argument(
         "--trials",
         type=whole,
-        help="trials of each combination (default: 10 of a simulation or a random search, 1 otherwise)",
+        help="trials of each combination (default: 10 for a simulation or a random search, otherwise 1)",
     )
     for name, explanation in (
         ("--ga", "options of the genetic algorithm: default, thesis or thesis_code"),
@@ -83,14 +83,14 @@ def add_sweep(sweep: CommandParser) -> None:
     sweep.add_argument(
         "--tracking",
         action="store_true",
-        help="with --simulate: simulate again with the identified parameters, for the tracking error",
+        help="with --simulate: find the tracking error by a simulation with the identified parameters",
     )
     sweep.add_argument(
         "--seed", type=whole_seed, default=0, help="seed of the first trial (default 0)"
     )
     sweep.add_argument("--threads", type=whole, help="number of threads; 0: all cores")
     sweep.add_argument("--workers", type=whole, help="number of processes that share the trials")
-    sweep.add_argument("--output", type=Path, help="a .jsonl file to which each trial is added")
+    sweep.add_argument("--output", type=Path, help="file to which each trial is added (.jsonl)")
     sweep.add_argument(
         "--resume", action="store_true", help="continue the study in the file of --output"
     )
@@ -123,7 +123,7 @@ def sweep(arguments: argparse.Namespace) -> None:
         )
     if (arguments.simulate is None) == (not arguments.recordings):
         if arguments.recordings:
-            raise InputError("recordings were given, and --simulate; they exclude each other")
+            raise InputError("a study needs recordings or a simulation (--simulate), not both")
         raise InputError("nothing to identify", remedy="give recordings or --simulate JOINT")
     options = stated_options(arguments)
     subject: Any
@@ -165,7 +165,7 @@ def sweep(arguments: argparse.Namespace) -> None:
     _write(study, arguments)
     if unnamed and "model" not in study.swept and not arguments.json:
         print(
-            "\nmodel: coulomb_viscous, since none is named; jointid compare says which one predicts"
+            "\nmodel: coulomb_viscous, because no model is named; jointid compare shows which model predicts best"
         )
 
 
@@ -175,9 +175,9 @@ def _continuation(arguments: argparse.Namespace) -> Iterator[None]:
     from jointid.study.sweeping import StudyBrokenError, StudyInterruptedError
 
     if arguments.output is None:
-        remedy = "they are lost; --output study.jsonl keeps each trial"
+        remedy = "the trials are lost; --output study.jsonl keeps each trial"
     else:
-        remedy = f"they are in {arguments.output}; the same command with --resume continues"
+        remedy = f"the trials are in {arguments.output}; the same command with --resume continues the study"
     try:
         yield
     except StudyInterruptedError as stop:

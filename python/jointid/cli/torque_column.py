@@ -53,11 +53,11 @@ def torque_or_servo(path: Path, reading: Mapping[str, Any]) -> Action | None:
     if quantity and not volts:  # if the header states the unit, it is not requested
         call: dict[str, Any] = {"columns": {quantity: name}}
         units = {} if unit else {"units": {quantity: header_unit(quantity, "revolute")}}
-        return Action("call", call | units, "" if unit else "with the unit that it has", "load")
+        return Action("call", call | units, "" if unit else "with the unit of this column", "load")
     return Action(
         "call",
         {"columns": {"torque": name}, "scale": {"torque": ...}},
-        "if that column is proportional to the torque, with the factor to N·m",
+        "if this column is proportional to the torque; state the factor to N·m",
         "load",
     )
 
@@ -66,7 +66,7 @@ def _of_servo(path: Path, header: str, where: Mapping[str, Any] | None) -> Input
     """Return the error about a servo's log. A duty times a factor is no torque, because back-EMF brakes, too."""
     runs = f" --by {behind_option(next(iter(where)))}" if where else ""
     return InputError(
-        f"the log has no torque: its column '{header}' is the duty or voltage of a servo, which is no torque",
+        f"the log has no torque: its column '{header}' is the duty or voltage of a servo, not a torque",
         argument="torque",
         place=str(path),
         remedy=f'identify with --joint SERVO.toml{runs} (a joint file with input = "voltage" under [drive]; '

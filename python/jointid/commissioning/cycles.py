@@ -43,42 +43,43 @@ def commission(
 ) -> Commissioning:
     """Move the joint, identify it from the recording, and move it again with the estimate.
 
-    If an estimate has a blocking finding, the joint does not move with it, and the commissioning ends; see
+    If an estimate has a blocking finding, the commissioning ends before the joint moves with this estimate. See
     `Commissioning.blocked`.
 
     Parameters
     ----------
     bench : Bench
-        Bench; its joint holds the initial assumptions of the parameters.
+        Bench. The parameter values of its joint are the controller's initial assumptions.
     cycles : int
-        Number of cycles of identification and motion. Default 2. With 0, the joint moves once and is recorded;
-        any controller may be used.
+        Number of cycles of identification and motion. Default 2. With 0, the joint moves once and is recorded. Any
+        controller may then be used.
     emulate : bool
-        Whether to move an emulated joint in virtual time, with a last run that uses the true parameters.
-        Default False: the real joint.
+        Whether to move an emulated joint in virtual time. The last run then uses the true parameters. Default False:
+        the real joint.
     seed : int
         Seed of the emulated sensor's noise and of the search. Default 0.
     threads : int
-        Threads of the search; 0 (default): all.
+        Number of threads of the search. Default 0: all processors.
     output : path, optional
-        Folder of recordings, frame logs and estimates; it is made if needed.
+        Folder of recordings, frame logs and estimates; it is created if needed.
     observer : callable, optional
         As in `Session`.
     callback : callable, optional
-        Called with a text before each step.
+        Function that is called with a text before each step.
     agree : callable, optional
-        Called before the joint moves with an estimate; if it returns False, the commissioning ends.
+        Function that is called with each estimate before the joint moves with it. If it returns False, the
+        commissioning ends.
 
     Raises
     ------
     InputError
         The controller uses no estimates, `cycles` is negative, or the bench cannot be emulated.
     SessionRefusedError, SessionStoppedError
-        As in `Session.run`; the folder has all recordings until then.
+        As in `Session.run`. The folder has all recordings up to the error.
     Exception
-        Any error of a session or a callable. Its attribute `recordings` maps each run's name, e.g. "initial", to
-        its recording; the last one may be incomplete. Its attribute `outcome` is the `Commissioning` until then, or
-        None if nothing was recorded.
+        Any error of a session or a callable. Its attribute `recordings` maps each run's name, e.g. "initial", to its
+        recording. The last recording may be incomplete. Its attribute `outcome` is the `Commissioning` up to the
+        error, or None if nothing was recorded.
     """
     if cycles < 0:
         raise InputError("at least 0 is expected", argument="cycles", value=cycles)
@@ -127,7 +128,7 @@ def commission(
             finally:
                 if session.recording is not None:
                     recordings[name] = session.recording
-            assert recording is not None, "only a dry run has none"
+            assert recording is not None, "only a dry run has no recording"
             return _assessed(name, recording, law)
 
         try:
@@ -188,7 +189,9 @@ def _keep(error: BaseException, recordings: Mapping[str, Recording]) -> None:
     """Attach the recordings to an exception, because without a folder they would be lost."""
     vars(error)["recordings"] = dict(recordings)
     if recordings:
-        error.add_note(f"the attribute `recordings` has what was recorded: {', '.join(recordings)}")
+        error.add_note(
+            f"the attribute `recordings` holds the recordings up to the error: {', '.join(recordings)}"
+        )
 
 
 def _assessed(name: str, recording: Recording, controller: Controller) -> BenchRun:

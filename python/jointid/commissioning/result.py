@@ -22,13 +22,12 @@ class BenchRun:
     Attributes
     ----------
     name : str
-        "initial", "cycle 1", …, "true parameters".
+        Name of the run: "initial", "cycle 1", …, "true parameters".
     recording : Recording
     controller : AdaptiveRobust, CompensatedPid or LugreObserver
         Controller with its assumed parameters.
     tracking_error, peak_error : float
-        Root mean square and largest magnitude of position minus reference, without the first sixth of the run
-        [rad].
+        Root mean square and largest magnitude of position minus reference [rad], without the first sixth of the run.
     """
 
     name: str
@@ -47,7 +46,7 @@ class Commissioning(Result):
     runs : tuple of BenchRun
         Initial run, then one run for each cycle that `agree` allowed and that has no blocking finding.
     estimates : tuple of Estimate
-        One estimate for each cycle, from all recordings until then; empty if the joint was only recorded.
+        One estimate for each cycle, from all recordings up to this cycle; empty if the joint was only recorded.
     truth : mapping of str to float
         True parameters of an emulated joint; empty otherwise.
     true_run : BenchRun or None
@@ -89,17 +88,17 @@ class Commissioning(Result):
 
     @property
     def blocked(self) -> Finding | None:
-        """Blocking finding of the last estimate, with which the joint did not move; None without one."""
+        """Blocking finding of the last estimate; None if it has none. The joint does not move with this estimate."""
         return None if not self.estimates else blocking(self.estimates[-1])
 
     @property
     def motion_warning(self) -> str:
-        """Difference from the bench of the designed motion; empty without a difference."""
+        """Differences from the bench that the motion was designed for; empty if there are none."""
         return str(self.runs[0].recording.metadata.get("motion_warning", ""))
 
     @property
     def improvement(self) -> float:
-        """Tracking error of the first run over that of the last run."""
+        """Tracking error of the first run, divided by the tracking error of the last run."""
         return self.runs[0].tracking_error / self.runs[-1].tracking_error
 
     def recordings(self) -> dict[str, Recording]:
@@ -135,7 +134,7 @@ class Commissioning(Result):
         Parameters
         ----------
         action : callable
-            Returns the text of a finding's advice. Default: as at a Python prompt.
+            Function that returns the text of a finding's advice. Default: the text for a Python prompt.
         verbose : bool
             Has no effect: this report is always complete.
         """
@@ -205,7 +204,9 @@ def summary(result: Commissioning) -> list[str]:
     sentence = f"The tracking error fell by a factor of {result.improvement:.1f}"
     if result.true_run is not None:
         ratio = result.runs[-1].tracking_error / result.true_run.tracking_error
-        sentence += f"; it ended at {ratio:.3f} times that with the true parameters"
+        sentence += (
+            f"; at the end, it is {ratio:.3f} times the tracking error with the true parameters"
+        )
     return [sentence + "."]
 
 
@@ -229,7 +230,7 @@ def _runs(result: Commissioning) -> list[str]:
     lines = [
         *_table(run_rows(result)),
         "",
-        "Tracking errors by the encoder, without the first sixth of each run.",
+        "Tracking errors are measured by the encoder, without the first sixth of each run.",
     ]
     said = summary(result)
     blank = [""] if result.blocked is not None else []
@@ -251,7 +252,7 @@ def timing_rows(result: Commissioning) -> list[list[str]]:
     return rows
 
 
-TIMING = "Late or lost samples are left out of the estimates; times are from median to worst."
+TIMING = "Late or lost samples are left out of the estimates; times are shown from median to worst."
 
 
 def _timing(result: Commissioning) -> list[str]:
@@ -308,7 +309,7 @@ def _ripple(result: Commissioning) -> str:
         return ", ".join(f"{name} {share:+.2f} %" for name, share in off.items())
 
     assert result.without_ripple is not None
-    return f"Errors without the sensor's ripple in the model: {worst(result.without_ripple)}."
+    return f"Errors of an estimate without the sensor's ripple in the model: {worst(result.without_ripple)}."
 
 
 def _table(rows: list[list[str]]) -> list[str]:

@@ -74,8 +74,7 @@ def compare_models(
     One recording is cut into contiguous blocks. Several recordings are one block each. Every model is fitted to all
     blocks except one and predicts that block. This is repeated for every block. The chosen model has the fewest
     parameters and a score within one standard error of the best score (one-standard-error rule, Breiman et al., 1984).
-    A model that the data do not support cannot be chosen: its estimate from all data has the warning `model_too_rich`,
-    or a parameter at a bound.
+    A model cannot be chosen if its estimate from all data has the warning `model_too_rich` or a parameter at a bound.
 
     The options of `identify` are the same for all models. Delays are identified from all data. The default of windows
     is the shortest of the models' defaults.

@@ -33,7 +33,9 @@ def compared_models(models: object) -> tuple[Model, ...]:
     given = (models,) if alone else tuple(models)  # type: ignore[arg-type]
     entries = tuple(Model.of(each).over(Model(asymmetric=False)) for each in given)
     if not entries:
-        raise InputError("at least one is expected, e.g. stribeck", argument="models", value=[])
+        raise InputError(
+            "at least one model is expected, e.g. stribeck", argument="models", value=[]
+        )
     for index, model in enumerate(entries):
         if not model.named:
             raise InputError(

@@ -62,10 +62,14 @@ def judged(entrants: Sequence[Entrant], paired: bool = False) -> Judgement:
         elif not each.eligible:
             reason = ""
         elif place != best and worse(place, best):
-            reason = "worse than the best by more than one standard error"
+            reason = "worse than the best model by more than one standard error"
         else:
-            count = f"{more} more parameter{'s' * (more != 1)}" if more else "as many parameters"
-            reason = f"not significantly better, with {count}"
+            count = (
+                f"{more} more parameter{'s' * (more != 1)}"
+                if more
+                else "the same number of parameters"
+            )
+            reason = f"not significantly better than the chosen model, with {count}"
         reasons.append(reason)
     sentence = _sentence([entrants[each] for each in able], entrants[winner], entrants[best])
     return Judgement(winner=winner, reasons=tuple(reasons), sentence=sentence)
@@ -76,11 +80,11 @@ def _sentence(able: Sequence[Entrant], winner: Entrant, best: Entrant) -> str:
     score = percent_with_error(best.score, best.stderr)
     if winner is not best:
         return (
-            f"{winner.name} ({count}) is the simplest model within one standard error of the best, "
-            f"{best.name} (residual {score}); its own residual is {100.0 * winner.score:.3g} %"
+            f"{winner.name} ({count}) is the simplest model within one standard error of the best model, "
+            f"{best.name} (residual {score}); the residual of {winner.name} is {100.0 * winner.score:.3g} %"
         )
     simpler = any(each.parameters < winner.parameters for each in able)
-    rest = ", and no simpler model is within one standard error of it" if simpler else ""
+    rest = ", and no simpler model is within one standard error of this residual" if simpler else ""
     return (
         f"{winner.name} ({count}) predicts held-out motion best, with a residual of {score}{rest}"
     )

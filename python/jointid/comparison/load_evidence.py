@@ -43,7 +43,7 @@ def load_refusal(estimate: Estimate) -> str | None:
     if found is None or not found.vary or found.at_bound is not None:
         return None  # a value at a bound is refused by another check
     if found.value > _NEAR_ONE:
-        return f"{_NAME} is {found.value:.3g}: near 1 it explains any torque"
+        return f"{_NAME} is {found.value:.3g}; a value near 1 fits any torque"
     if found.value < _SMALLEST:
         return f"{_NAME} is {found.value:.2g}, too small to separate from noise"
     source = estimate.follow_up
@@ -53,13 +53,13 @@ def load_refusal(estimate: Estimate) -> str | None:
     if not choice.sensor and choice.model.resolved.gravity == "none":
         return (
             f"{_NAME} needs a known load in addition to the drive's torque, from a sensor or from gravity; without "
-            "it, the scale of the other terms has the same effect"
+            "this load, a scale of all other terms has the same effect"
         )
     value, error = _beside_other_causes(estimate, source.problem)
     if not value > _SURE * error or not _KEPT < value / found.value < 1.0 / _KEPT:
         return (
-            f"{_NAME} is {found.value:.2g} alone, but {value:.2g} ± {error:.1g} with other causes in the fit (drift, "
-            "torque over the angle, delay, slow motion): the motion does not separate them"
+            f"{_NAME} is {found.value:.2g}, but {value:.2g} ± {error:.1g} in a fit with other causes (drift, torque "
+            "over the angle, delay, slow motion): the motion does not separate load friction from these causes"
         )
     return None
 

@@ -64,7 +64,7 @@ def comparison_fields(text: str, of_estimate: type[EstimateRecord]) -> dict[str,
     """Return the fields of the comparison that a JSON text holds; see `Comparison.from_json`."""
     d = _COMPARISON.read(read_document(text, KIND, SCHEMA, "a comparison of models"), "")
     if d["winner"] not in [row["model"] for row in d["rows"]]:
-        raise InputError("this is none of the rows", value=d["winner"], place="winner")
+        raise InputError("no row has this model", value=d["winner"], place="winner")
     try:
         estimate = estimate_of(d["estimate"], of_estimate)
     except InputError as error:

@@ -36,7 +36,7 @@ class Comparison(KeptResult):
     Attributes
     ----------
     rows : tuple of ComparedModel
-        Compared models, in the order of the call.
+        One row for each compared model, in the order of the call.
     winner : str
         Text of the chosen model.
     reason : str
@@ -44,8 +44,8 @@ class Comparison(KeptResult):
     estimate : Estimate
         Estimate of the chosen model from all data.
     settings : mapping
-        Number of folds, the held-out part ("held_out"), windows, method, residual, and "left_out": the models that were
-        not compared, with the reason for each.
+        Number of folds, held-out part ("held_out"), windows, method and residual. "left_out" contains the models
+        that were not compared, with the reason for each model.
 
     Examples
     --------
@@ -100,16 +100,16 @@ class Comparison(KeptResult):
     def report(
         self, action: Callable[[Action], str] = str, saved: str = "", *, verbose: bool = False
     ) -> str:
-        """Return the comparison as text: the chosen model, a line for each model, then its verdict and findings.
+        """Return the comparison as text: chosen model, a line for each model, verdict and findings of the chosen model.
 
         Parameters
         ----------
         action : callable
-            Gives the text of an action. Default: the text for a Python prompt.
+            Function that returns the text of an action. Default: the text for a Python prompt.
         saved : str
             File of the chosen model's estimate. Default: none.
         verbose : bool
-            Whether to return everything: penalties, folds, models that were not compared. Default False.
+            Whether to return the complete report: penalties, folds, models that were not compared. Default False.
         """
         if verbose:
             return self._whole()
@@ -153,7 +153,7 @@ class Comparison(KeptResult):
         Returns
         -------
         DataFrame
-            Indexed by the model's text; scores relative to the measured signal, as in `rows`.
+            Data frame indexed by the model's text. Scores are relative to the measured signal, as in `rows`.
 
         Raises
         ------
@@ -169,7 +169,7 @@ class Comparison(KeptResult):
         return data_frame(rows, index="model")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the estimate has the format of `Estimate.to_dict`."""
+        """Return the whole comparison in JSON's types; the estimate has the format of `Estimate.to_dict`."""
         from jointid.comparison.reading_back import KIND, SCHEMA
 
         return {
@@ -183,12 +183,12 @@ class Comparison(KeptResult):
         }
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the comparison from a JSON text. Methods of its estimate that need the recordings raise an error.
+        """Return the comparison from a JSON text. The estimate's methods that need the recordings raise an error.
 
         Parameters
         ----------

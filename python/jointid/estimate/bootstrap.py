@@ -106,7 +106,7 @@ class Bootstrap(Result):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return what `report` shows, in JSON's types; without the samples."""
+        """Return the content of `report` in JSON's types, without the samples."""
         document: dict[str, Any] = json_types(
             {
                 "parameters": {name: asdict(p) for name, p in self.parameters.items()},

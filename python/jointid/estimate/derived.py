@@ -111,7 +111,7 @@ def _constants(estimate: EstimateRecord) -> Iterator[DerivedValue]:
             yield _derived(
                 estimate,
                 name=f"constant_{name.removeprefix('coulomb_')}{run}",
-                meaning="friction and offset at low speed, "
+                meaning="sum of friction and offset at low speed, "
                 + name.removeprefix("coulomb_")
                 + " velocity",
                 unit=unit,
@@ -146,7 +146,7 @@ def sums_of_splits(estimate: EstimateRecord) -> Iterator[DerivedValue]:
             times = "" if abs(abs(factor) - 1.0) < 5e-4 else f"{abs(factor):.4g} · "
             yield DerivedValue(
                 name=f"{one}_and_{other}",
-                meaning=f"{one} and {other} together in the recorded motion, which cannot separate them",
+                meaning=f"combined value of {one} and {other}, which the recorded motion cannot separate",
                 unit=found[one].unit,
                 value=value,
                 stderr=error,

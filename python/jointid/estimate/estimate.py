@@ -30,60 +30,61 @@ class Estimate(Questions, KeptResult):
     Attributes
     ----------
     parameters : mapping of str to ParameterEstimate
-        In the order of the torque balance.
+        Parameters by name, in the order of the torque balance.
     status : str
-        "converged", or "stopped" when a callback ended the search early.
+        "converged", or "stopped" if a callback ended the search early.
     message : str
         Description of the end of the search.
     penalty : float
-        Sum of squared window residuals. With ``gain="instruments"`` the residuals are those of the torque, and the
-        part that the motion explains replaces the sensor's reading.
+        Sum of squared window residuals. With ``gain="instruments"``, these are residuals of the torque. They
+        contain only the part of the sensor's reading that the motion explains.
     correlation : ndarray, shape (p, p)
-        Correlation of the free parameters, in the order of `free`; offsets are centered at the mean reading.
+        Correlation of the free parameters, in the order of `free`, with offsets at the sensor's mean reading.
     condition : float
-        Condition number of the scaled regressor.
+        Condition number of the scaled regressor matrix.
     weakest : tuple of str
-        Parameters with a large share in the least determined direction.
+        Parameters with a large share in the combination that the data determine worst.
     covariance : ndarray, shape (p, p)
         Covariance of the free parameters. If the data cannot separate an offset from direction-dependent Coulomb
-        friction, the offset's variance is infinite, and the other variances hold for a fixed offset.
+        friction, the offset's variance is infinite. The other variances then apply to a fixed offset.
     information : ndarray, shape (p, p), or None
-        Inverse of the covariance of random errors; zero along a direction that the recordings do not determine.
+        Inverse of the covariance of random errors; zero for a combination that the recordings do not determine.
         None in an estimate saved by an older version.
     residuals : ResidualStatistics
     windows : WindowTable
     convergence : Convergence or None
-        The search, generation by generation; None without a genetic or random search.
+        Course of the search over its generations; None without a genetic or random search.
     findings : tuple of Finding
-        Problems and remarks on data and fit, most severe first; `docs/findings.md` lists the codes.
+        Problems of data and fit, and remarks, most severe first; `docs/findings.md` lists the codes.
     derived : mapping of str to DerivedValue
         Quantities that follow from the parameters, with standard errors: "breakaway" (coulomb + static),
-        "stribeck_velocity" (1/√stribeck). Asymmetric friction adds "coulomb_sum" and, with an offset,
-        "constant_positive" and "constant_negative", which the data determine even if the offset is undetermined.
+        "stribeck_velocity" (1/√stribeck). Asymmetric friction adds "coulomb_sum". With an offset, it also adds
+        "constant_positive" and "constant_negative". The data determine both even if the offset is undetermined.
     warnings : tuple of Finding
         The findings of severity "warning" or "blocking".
     joint : Joint
-        The joint with the estimated values, ready to be used or saved.
+        Joint with the estimated values, for use or for a joint file.
     settings : mapping
-        Everything needed to repeat the run: method, residual, terms, options, seed, versions, fingerprints.
+        Settings that repeat the identification: method, residual, terms, options, seed, versions, fingerprints.
     seconds : float
-        Wall time.
+        Wall time [s].
     delays : mapping of str to Delay
-        Constant delay of each signal against the position, if the data show one. A certain delay is removed
-        before the identification.
+        Constant delay of each signal relative to the position, if the data show a delay. `identify` removes
+        statistically certain delays.
     within : mapping of str to float
-        Largest relative error (95 %) for each purpose of the verdict. "compensation": friction in the recorded motion,
-        or a fifth of the torque if friction is smaller. "simulation": the torque. "monitoring": the parameter with
-        the largest random error. A purpose without a known error is missing.
+        Relative error (half of the 95 % interval) for each purpose of the verdict. "compensation": error of the
+        friction in the recorded motion, relative to this friction, but at least to a fifth of the torque.
+        "simulation": error of the torque. "monitoring": random error of the worst parameter. A purpose with an
+        unknown error is missing.
     slow_motion : SlowMotion or None
-        How the slowest windows disagree with the faster ones; None if this was not examined.
+        Disagreement of the slowest windows with the faster windows; None if not examined.
     selection : Selection or None
-        How the model was chosen; None if it was named.
+        Choice of the model, with scores and reason; None if the model was named.
     cross_check : CrossCheck or None
-        Values of an independent least squares on the recorded signals, and whether they agree. None in an estimate
-        saved by an older version.
+        Values of an independent least-squares fit to the recorded signals, and whether both fits agree. None in an
+        estimate saved by an older version.
     follow_up : FollowUp or None
-        Answers questions that need the recordings; None in an estimate that was read from a file.
+        Object that answers questions with the recordings; None in an estimate that was read from a file.
 
     Examples
     --------
@@ -132,14 +133,14 @@ class Estimate(Questions, KeptResult):
 
     @property
     def derived(self) -> Mapping[str, DerivedValue]:
-        """Derived quantities by name, e.g. breakaway friction, with standard errors, if the model has them."""
+        """Derived quantities of the model by name, with standard errors, e.g. the breakaway friction."""
         from jointid.estimate.derived import derived_values
 
         return derived_values(self)
 
     @property
     def verdict(self) -> Verdict:
-        """Whether the values may be used, and for what; `jointid.estimate.verdict.judged` also uses a self-test."""
+        """Verdict on the use of the values; `jointid.estimate.verdict.judged` also considers a self-test."""
         from jointid.estimate.verdict import judged
 
         return judged(self)
@@ -186,12 +187,12 @@ class Estimate(Questions, KeptResult):
         return friction_curve(self, velocities, finite_number("", "load", load))
 
     def predict(self, recording: Recording) -> Prediction:
-        """Predict the window integrals of a recording, and compare them with the measured ones.
+        """Predict the window integrals of a recording, and compare them with the measured integrals.
 
         Parameters
         ----------
         recording : Recording
-            A recording of the same joint; it may be a new one.
+            Recording of the same joint; it may be a new recording.
 
         Returns
         -------
@@ -229,8 +230,8 @@ class Estimate(Questions, KeptResult):
         -------
         DataFrame
             Frame indexed by name, with the attributes of `ParameterEstimate`: value, stderr, systematic, the ends of
-            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. Derived quantities lack
-            some of them.
+            the interval (low, high), bounds (min, max), vary, at_bound, unit, meaning. Derived quantities lack some
+            of these attributes.
 
         Raises
         ------
@@ -247,7 +248,7 @@ class Estimate(Questions, KeptResult):
         return parameter_frame(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the whole estimate in JSON's types, same as in `to_json`."""
+        """Return the whole estimate in JSON's types, as in `to_json`."""
         from jointid.estimate.json import estimate_document
 
         return estimate_document(self)
@@ -260,18 +261,18 @@ class Estimate(Questions, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimate in a JSON text.
+        """Return the estimate from a JSON text.
 
         Parameters
         ----------
         text : str
-            From `to_json`, of this schema or an older one.
+            JSON text from `to_json`, of this schema or an older schema.
 
         Raises
         ------
         InputError
-            The text is not JSON, is not an estimate, has a newer schema, or has an invalid value; the place is
-            the JSON path, e.g. "parameters.coulomb.value".
+            The text is not JSON, is not an estimate, has a newer schema, or has an invalid value. The error's place
+            is the JSON path, e.g. "parameters.coulomb.value".
         """
         from jointid.base.schema import read_json
         from jointid.estimate.json import estimate_of
@@ -280,7 +281,7 @@ class Estimate(Questions, KeptResult):
 
     @classmethod
     def load(cls, path: str | Path) -> Self:
-        """Return the estimate in a .json file.
+        """Return the estimate from a .json file.
 
         Parameters
         ----------
@@ -289,8 +290,8 @@ class Estimate(Questions, KeptResult):
         Raises
         ------
         InputError
-            The file does not exist, is not JSON, is not an estimate, or has a newer schema; the error names the file
-            and the place in it.
+            The file does not exist, is not JSON, is not an estimate, or has a newer schema; the error names the
+            file and the place in the file.
         """
         from jointid.base.schema import read_text
 
@@ -300,7 +301,7 @@ class Estimate(Questions, KeptResult):
             ("{", "[")
         ):  # another kind of file: the place of a JSON error would not help
             raise InputError(
-                "an estimate is expected, the .json file that identify saves",
+                "an estimate is expected: a .json file that identify saved",
                 place=str(path),
             )
         try:
@@ -309,19 +310,20 @@ class Estimate(Questions, KeptResult):
             raise error.at(str(path)) from error
 
     def save(self, path: str | Path) -> Path:
-        """Save to .json, or to a joint file (.toml: its parameter table is updated, comments stay).
+        """Save the estimate to a .json file, or its joint to a joint file (.toml).
 
-        The file is written completely or not at all. The method returns its path.
+        An existing joint file keeps its comments. The file is written completely or not at all. The method returns
+        the file's path.
 
         Parameters
         ----------
         path : path-like
-            File name; the ending chooses the format.
+            File name; its ending determines the format.
 
         Raises
         ------
         InputError
-            The name has another ending, the folder does not exist, or an existing joint file cannot be read.
+            The file name has another ending, the folder does not exist, or an existing joint file cannot be read.
         OSError
             The file cannot be written.
         """

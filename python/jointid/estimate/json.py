@@ -67,14 +67,14 @@ def estimate_of(document: Any, cls: type[Saved]) -> Saved:
     if not isinstance(document, dict) or document.get("kind") != _KIND:
         kind = document.get("kind") if isinstance(document, dict) else None
         if isinstance(kind, str) and kind in _OTHERS:
-            raise InputError(f"this is {_OTHERS[kind]}, and the estimate of one joint is expected")
+            raise InputError(f"this is {_OTHERS[kind]}, but the estimate of one joint is expected")
         raise InputError(
             f"this JSON is not a jointid estimate: its field 'kind' is not '{_KIND}'",
             remedy="save one with identify",
         )
     schema = int(Number(low=1, whole=True).read(document.get("schema"), "schema"))
     if schema > SCHEMA:
-        reason = f"this jointid reads schemas up to {SCHEMA}"
+        reason = f"this version of jointid reads schemas up to {SCHEMA}"
         raise InputError(reason, value=schema, place="schema", remedy="update jointid")
     return _estimate(ESTIMATE[schema].read(document, ""), cls)
 
@@ -120,33 +120,36 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     names, free = d["parameters"], d["free"]
     for name, entry in names.items():
         if entry["name"] != name:
-            yield f"parameters.{name}.name", "this is not the name of the entry"
+            yield f"parameters.{name}.name", "this name differs from the key of its entry"
     for name, entry in d.get("delays", {}).items():
         if entry["signal"] != name:
-            yield f"delays.{name}.signal", "this is not the name of the entry"
+            yield f"delays.{name}.signal", "this name differs from the key of its entry"
     for i, name in enumerate(free):
         if name not in names or name in free[:i]:
-            yield f"free[{i}]", "this is not a parameter, or it is there twice"
+            yield f"free[{i}]", "this is not a parameter, or the list has it twice"
     yield from empty_calls(d.get("findings", ()))
     for field in ("correlation", "covariance", "information"):
         matrix = d.get(field)
         if matrix is not None and any(len(row) != len(free) for row in (matrix, *matrix)):
-            yield field, f"{len(free)} rows of {len(free)} are expected, as many as free parameters"
+            yield (
+                field,
+                f"{len(free)} rows of {len(free)} values are expected, one for each free parameter",
+            )
     for field in ("windows", "convergence"):
         if d[field] is not None and len({len(column) for column in d[field].values()}) > 1:
             yield field, "lists of the same length are expected"
     if max(d["windows"]["recording"]) >= len(d["settings"]["recordings"]):
-        yield "windows.recording", "settings.recordings has fewer recordings"
+        yield "windows.recording", "settings.recordings has no recording with this number"
     if (chosen := d.get("selection")) is not None:
         texts = [each["model"] for each in chosen["candidates"]]
         for field in ("model", "runner_up"):
             if chosen[field] is not None and chosen[field] not in texts:
-                yield f"selection.{field}", "this is none of the candidates"
+                yield f"selection.{field}", "this is not one of the candidates"
     values = {name.partition("[")[0] for name in names}  # coulomb[0] is one recording's own
     for i, key in enumerate(d["settings"]["terms"]):
         term = _term(key)
         if term is None or not {term.name, *term.shapes} <= values:
-            yield f"settings.terms[{i}]", "this is not a term with a value among the parameters"
+            yield f"settings.terms[{i}]", "this term is unknown, or its parameters are missing"
 
 
 def empty_calls(findings: Sequence[Mapping[str, Any]]) -> Iterator[tuple[str, str]]:

@@ -135,13 +135,14 @@ def _posed(fitted: FittedModel, recording: Recording) -> Problem:
     )
     if recording.kind != settings["kind"]:
         raise InputError(
-            f"the estimate is of a {settings['kind']} joint",
+            f"the estimate describes a {settings['kind']} joint",
             argument="recording.kind",
             value=recording.kind,
         )
     if choice.sensor and recording.sensor is None:
         raise InputError(
-            "the estimate has a torque sensor, the recording has none", argument="recording.sensor"
+            "the estimate has a torque sensor, but the recording has none",
+            argument="recording.sensor",
         )
     shift = settings.get("shift", {})
     if recording.velocity_derived:

@@ -24,21 +24,22 @@ class Questions(EstimateRecord):
     __slots__ = ()
 
     def selftest(self, trials: int = 3, seed: int = 0) -> SelfTest:
-        """Test whether known parameters are recovered from the recorded motion with the recordings' noise.
+        """Test whether `identify` recovers known parameters from the recorded motion with the recordings' noise.
 
         Each trial uses the recorded motion without noise, and computes the torque and the sensor's reading for
-        known parameters. Then it adds noise as in the recordings: quantization and white noise of position,
-        velocity and sensor, and a disturbance torque from the residuals, in blocks with random order and signs.
-        Then it identifies the parameters with the same settings. The first trial uses the estimated parameters;
-        the others draw parameters from the intervals. If a parameter is recovered, such a motion can identify it,
-        *provided that the joint is as modelled*; otherwise it cannot.
+        known parameters. Each trial then adds noise as in the recordings: quantization and white noise of position,
+        velocity and sensor, and a disturbance torque. This torque consists of blocks of the residuals, with random
+        order and signs. Then the trial identifies the parameters with the same settings. The known parameters are
+        the estimated values in the first trial, and draws from their intervals in the other trials. Such a motion
+        can identify the recovered parameters, *provided that the joint is as modelled*. It cannot identify the
+        other parameters.
 
         Parameters
         ----------
         trials : int
             Number of trials, 1 to 1000. Default 3.
         seed : int
-            The same seed gives the same bits, on any number of threads. Default 0.
+            Random seed. The same seed gives bit-identical results for any number of threads. Default 0.
 
         Returns
         -------
@@ -47,9 +48,9 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or `trials` is out of range.
+            The estimate was read from a file and has no recordings, or `trials` is out of range.
         KeyboardInterrupt
-            Ctrl-C; it is raised within 0.1 s.
+            After Ctrl-C, within 0.1 s.
 
         Examples
         --------
@@ -63,16 +64,16 @@ class Questions(EstimateRecord):
     def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
         """Draw stretches of the recordings with replacement, and refit the parameters to each draw (block bootstrap).
 
-        This checks the standard errors without their formula. A block is as long as a segment of motion: an
-        eighth of the motion, between 0.25 and 1 s, and longer for recordings over 10 min. The refit stays within
-        the search bounds, with the torque balance linearised at the estimate.
+        The draws check the standard errors without their formula. A block lasts an eighth of the motion, at least
+        0.25 s and at most 1 s; recordings over 10 min have longer blocks. Refitted values stay within the search
+        bounds. The torque balance is linearised at the estimate.
 
         Parameters
         ----------
         n : int
             Number of draws, 20 to 1,000,000. Default 1000.
         seed : int
-            The same seed gives the same bits, on any number of threads. Default 0.
+            Random seed. The same seed gives bit-identical results for any number of threads. Default 0.
 
         Returns
         -------
@@ -81,9 +82,9 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or `n` is out of range.
+            The estimate was read from a file and has no recordings, or `n` is out of range.
         KeyboardInterrupt
-            Ctrl-C; it is raised within 0.1 s.
+            After Ctrl-C, within 0.1 s.
 
         Examples
         --------
@@ -97,15 +98,15 @@ class Questions(EstimateRecord):
     def causes(self, signals: Mapping[str, ArrayLike] | None = None) -> Causes:
         """Return the causes of a poor fit: name, explained share of the residual, effect on the values, remedies.
 
-        Each candidate is fitted together with the model to a part of the recording, and judged on the rest, with
-        windows of 1, 4, 16 and 64 times the usual length. `identify` does this automatically if the residuals
-        exceed the noise, and reports the causes as findings.
+        Each possible cause is fitted together with the model to a part of the recording, and tested on the rest.
+        The windows have 1, 4, 16 and 64 times the usual length. If the residuals exceed the noise, `identify`
+        itself searches for causes and reports them as findings.
 
         Parameters
         ----------
         signals : mapping of str to array_like, optional
-            Further signals that may act on the joint, by name, one value per sample: another joint's velocity,
-            a temperature. Default: none.
+            Further signals that may act on the joint, by name, with one value per sample: e.g. another joint's
+            velocity, or a temperature. Default: none.
 
         Returns
         -------
@@ -114,8 +115,7 @@ class Questions(EstimateRecord):
         Raises
         ------
         InputError
-            The estimate was read from a file, which does not hold the recordings; or a signal does not fit
-            the recording.
+            The estimate was read from a file and has no recordings, or a signal does not fit the recording.
 
         Examples
         --------
@@ -124,7 +124,9 @@ class Questions(EstimateRecord):
         """
         if signals is not None and not isinstance(signals, Mapping):
             raise InputError(
-                "signals by name are expected", argument="signals", value=type(signals).__name__
+                "a mapping from names to signals is expected",
+                argument="signals",
+                value=type(signals).__name__,
             )
         return self._with_recordings("causes").causes(self, signals or {})
 
@@ -136,29 +138,30 @@ class Questions(EstimateRecord):
     ) -> Any:
         """Design the next motion to record: the motion that adds the most information to this estimate.
 
-        The design uses the information of the estimate's recordings, draws joints from its intervals, and gives
-        its values to the controller (unless another controller is set). Then identify both recordings together:
-        ``identify([first, second], joint)``.
+        The design uses the information of the estimate's recordings, and draws joints from the estimate's
+        intervals. The default controller has the estimated values. After the recording, identify both recordings
+        together: ``identify([first, second], joint)``.
 
         Parameters
         ----------
         limits : MotionLimits or mapping, optional
-            Same as in `design`. Default: the joint's limits.
+            Limits of the motion, as in `design`. Default: the joint's limits.
         duration : float
             Duration of the motion [s]. Default 12.
         **options
-            `joint` adds facts that the identified joint lacked, e.g. a link; other options as in `design`. By
-            default `parameters` are the free parameters, and `sensors` have the noise from the residuals.
+            Options of `design`. `joint` adds facts that the identified joint lacked, e.g. a link. By default,
+            `parameters` are the free parameters, and `sensors` have the noise from the residuals.
 
         Returns
         -------
         Design
-            The design, with the expected errors from both recordings together; `before` has this estimate's errors.
+            Design with the expected errors from both recordings together. Their attribute `before` is this
+            estimate's error.
 
         Raises
         ------
         InputError
-            Same errors as `design`; or no parameter is free, or it is another joint.
+            Same errors as in `design`. No parameter is free, or `joint` is another joint.
 
         Examples
         --------
@@ -174,8 +177,8 @@ class Questions(EstimateRecord):
         """Return the object that answers questions with the recordings."""
         if self.follow_up is None:
             raise InputError(
-                "this estimate was read from a file, which does not hold the recordings",
+                "this estimate was read from a file, and the file does not contain the recordings",
                 argument=question,
-                remedy="identify again, and ask the new estimate",
+                remedy="identify again, and use the new estimate",
             )
         return self.follow_up

@@ -187,7 +187,7 @@ def hidden_inertia(estimate: EstimateRecord, asked: tuple[str, ...]) -> Iterable
         if p.at_bound is not None:  # not among the free parameters
             yield Objection(
                 code="at_bound",
-                reason=f"a simulation needs {name}, which ended on its bound",
+                reason=f"a simulation needs {name}, but this parameter ended on its bound",
                 blocking=True,
                 parameters=(name,),
             )

@@ -57,7 +57,7 @@ class EstimateRecord:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Findings that may bias values or make them unusable."""
+        """Findings of severity "warning" or "blocking"."""
         return tuple(found for found in self.findings if found.severity != "info")
 
 

@@ -38,7 +38,7 @@ class RunRollout:
     closed : bool
         Whether the position loop was closed; otherwise the logged duty or torque drove the motor or the joint.
     before : float or None
-        The same error for the URDF without friction [rad or m]; None: not computed.
+        Mean absolute error of the position with the URDF without friction [rad or m]; None: not computed.
     kind : {"revolute", "prismatic"}
     """
 
@@ -76,14 +76,15 @@ class RunRollout:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Rollout(Result):
-    """Rollouts of all runs.
+    """Simulations of all runs of a servo or robot.
 
     Attributes
     ----------
     runs : tuple of RunRollout
-        Simulated runs; for a robot, one per recording and joint.
+        Simulated runs; for a robot, one run per recording and joint.
     horizon : float or None
-        Length of stretches that start at the logged state [s]. None: each run is one stretch.
+        Duration of the simulated stretches [s]; each stretch starts at the logged state. None: each run is one
+        stretch.
     """
 
     runs: tuple[RunRollout, ...]
@@ -131,13 +132,13 @@ class Rollout(Result):
         worst = max(self.runs, key=lambda run: run.error)
         shown = "median" if len({run.kind for run in self.runs}) == 1 else "largest"
         error = self.median if shown == "median" else worst.error
-        text = f"Mean position error, {shown} of {len(self.runs)} runs: {worst.shown(error):.3g} {worst.unit}"
+        text = f"Mean position error ({shown} of {len(self.runs)} runs): {worst.shown(error):.3g} {worst.unit}"
         if self.horizon is not None:
-            text += f", over stretches of {self.horizon:g} s that begin at the logged state"
+            text += f", in simulations of {self.horizon:g} s that begin at the logged state"
         known = [run.before for run in self.runs if run.before is not None]
         if known and shown == "median":
             before = float(np.median(known))
-            text += f"; {worst.shown(before):.3g} {worst.unit} with the URDF and without friction"
+            text += f"; with the URDF and without friction: {worst.shown(before):.3g} {worst.unit}"
         return f"{text}."
 
     def report(self, *, verbose: bool = False) -> str:
@@ -156,7 +157,7 @@ class Rollout(Result):
         return "\n".join(aligned([head, *rows]))
 
     def table(self) -> tuple[list[str], list[list[str]]]:
-        """Return head and rows: each run's error and, if known, its error without friction and its spread."""
+        """Return header and rows of a table: error of each run and, if known, error without friction and spread."""
         unit = " or ".join(dict.fromkeys(run.unit for run in self.runs))
         columns = {f"error [{unit}]": [f"{run.shown(run.error):.2f}" for run in self.runs]}
         if any(run.before is not None for run in self.runs):

@@ -35,18 +35,18 @@ class Candidate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Selection:
-    """The choice of a model by held-out prediction.
+    """Choice of a model by its prediction of held-out parts of the recordings.
 
     Attributes
     ----------
     model : str
         Text of the chosen model.
     runner_up : str or None
-        Text of the second best model; None if there was no other.
+        Text of the second best model; None if there was no other model.
     candidates : tuple of Candidate
         Candidates, simplest first.
     blocks : int
-        Number of parts of the recordings that were held out in turn.
+        Number of parts of the recordings. Each part was held out once.
 
     Examples
     --------
@@ -74,14 +74,14 @@ class Selection:
 
     @property
     def sentence(self) -> str:
-        """The choice and its reason in one line, with the second best model and both scores."""
+        """Chosen model and reason in one line, with the second best model and both scores."""
         chosen = self[self.model]
         if self.runner_up is None:
             return f"{self.model}: no other model could be compared"
         other = self[self.runner_up]
         text = (
-            f"{self.model} misses {_percent(chosen.score)} of the held-out torque, "
-            f"{other.model} {_percent(other.score)}"
+            f"{self.model} has a residual of {_percent(chosen.score)} of the held-out torque, "
+            f"{other.model} has {_percent(other.score)}"
         )
         if other.refused:
             return f"{text} ({other.refused})"

@@ -77,7 +77,7 @@ class SelfTest(Result):
     trials : int
     seed : int
     failed : str
-        Reason why a trial could not be identified; empty if all could.
+        Reason why the identification of a trial failed; empty if no trial failed.
 
     Examples
     --------
@@ -103,7 +103,7 @@ class SelfTest(Result):
                     name=row.parameter,
                     value=row.value,
                     unit=row.unit,
-                    meaning=f"identified in trial {row.trial + 1}, the truth is {number(row.truth)}",
+                    meaning=f"value identified in trial {row.trial + 1}; true value {number(row.truth)}",
                     remark=_REMARKS.get(_comes_back(row), _comes_back(row)),
                 )
                 for row in self.rows
@@ -120,9 +120,9 @@ class SelfTest(Result):
         return tuple(dict.fromkeys(row.parameter for row in self.rows))
 
     def recovered(self, parameter: str) -> bool:
-        """Return whether a parameter is recovered: close in every trial, and covered in all trials except at most one.
+        """Return whether a parameter is recovered: `close` in every trial, and `covered` in all trials but at most one.
 
-        A 95 % interval sometimes misses the truth by chance; this is no fault of the recording.
+        One exception is allowed, because a 95 % interval sometimes does not contain the truth by chance.
         """
         mine = [row for row in self.rows if row.parameter == parameter]
         covered = sum(row.covered for row in mine)
@@ -140,18 +140,18 @@ class SelfTest(Result):
 
     @property
     def verdict(self) -> str:
-        """The result as a sentence."""
+        """Result of the self-test as a sentence."""
         if self.failed:
             return f"a trial could not be identified: {self.failed}"
         if self.passed:
             return (
-                f"all parameters are recovered in {self.trials} trials: this motion, with noise and residuals as "
-                "recorded, determines them if the joint is as modelled"
+                f"all parameters are recovered in {self.trials} trials: with noise and residuals as recorded, this "
+                "motion determines them if the model is right"
             )
         parts = [f"{name} ({self._worst(name)})" for name in self.lost]
         return (
-            f"these parameters are not recovered: {', '.join(parts)}: this motion, with noise and residuals as "
-            "recorded, does not determine them, even if the joint is as modelled"
+            f"these parameters are not recovered: {', '.join(parts)}; with noise and residuals as recorded, this "
+            "motion does not determine them, even if the model is right"
         )
 
     def _worst(self, parameter: str) -> str:
@@ -183,11 +183,11 @@ class SelfTest(Result):
         return printable("\n".join([*lines, "", self.verdict]))
 
     def to_json(self) -> str:
-        """Return everything as JSON with a schema version."""
+        """Return the whole result as JSON with a schema version."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; a number that is not finite becomes a text."""
+        """Return the whole result in JSON's types; a number that is not finite becomes a text."""
         document: dict[str, Any] = json_types(
             {
                 "schema": SCHEMA,

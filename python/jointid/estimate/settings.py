@@ -61,7 +61,11 @@ def model_description(settings: Mapping[str, Any]) -> str:
 
 def residual_text(residual: str) -> str:
     """Return the compared signal as text, e.g. "residual of the torque"."""
-    return "gain by instruments" if residual == "instruments" else f"residual of the {residual}"
+    return (
+        "gain by instrumental variables"
+        if residual == "instruments"
+        else f"residual of the {residual}"
+    )
 
 
 def torque_unit(settings: Mapping[str, Any]) -> str:

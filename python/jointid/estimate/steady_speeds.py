@@ -90,8 +90,8 @@ class SteadyFriction:
             *("friction map of steady speeds", "", *aligned(table), ""),
             f"speeds     {self.speeds[0]:.4g} … {self.speeds[1]:.4g} {speed} in {ways}, {self.rows} rows{rest}",
             f"fit        residual {two_digits(self.rms)} {torque} rms, {percent(self.share)} of the torque",
-            "missing    inertia and gravity: a table of steady speeds has no acceleration and no position; record "
-            "time, position and torque of a motion for them",
+            "missing    inertia and gravity: a table of steady speeds has no acceleration and no position; for "
+            "inertia and gravity, record time, position and torque of a motion",
         ]
         if self.assumed:
             lines.append(f"note       SI units assumed: {', '.join(self.assumed)}")
@@ -139,8 +139,8 @@ def steady_friction(velocity: Array, torque: Array, kind: str = "revolute") -> S
     fits = [fit for terms in _models(directions) if (fit := _fitted(terms, v, tau)) is not None]
     if not fits:
         raise InputError(
-            f"{len(v)} rows with {len(set(np.abs(v).tolist()))} different speeds other than 0; a friction map needs at "
-            f"least {2 + _SPARE} rows and two speeds in each of its directions"
+            f"the table has {len(v)} rows with {len(set(np.abs(v).tolist()))} different speeds above 0; a friction map "
+            f"needs at least {2 + _SPARE} rows and two speeds in each of its directions"
         )
     _, values, errors, rms = min(fits, key=lambda fit: fit[0])
     speeds = np.abs(v)

@@ -84,7 +84,10 @@ def quality(estimate: EstimateRecord) -> list[tuple[str, str]]:
     stated = ", ".join(f"{name} ± {value}" for name, value in tolerances)
     return [
         ("model", model_description(estimate.settings)),
-        *([("given", f"{stated}; the intervals hold if these facts are right")] * bool(stated)),
+        *(
+            [("given", f"{stated}; the intervals are valid if these facts are right")]
+            * bool(stated)
+        ),
         *([("chosen", estimate.selection.sentence)] if estimate.selection else []),
         (
             "fit",
@@ -93,7 +96,8 @@ def quality(estimate: EstimateRecord) -> list[tuple[str, str]]:
         ("windows", f"{r.windows} of {1e3 * r.window_duration:.4g} ms"),
         (
             "left out",
-            f"{100.0 * r.left_out:.1f} % of the intervals; standing still in {100.0 * r.standing:.1f} % of the samples",
+            f"{100.0 * r.left_out:.1f} % of the intervals; the joint stands still in {100.0 * r.standing:.1f} % of the "
+            "samples",
         ),
         *_refinements(estimate),
         ("residuals", f"autocorrelation of neighbouring windows {r.autocorrelation:.2f}"),

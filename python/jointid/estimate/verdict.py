@@ -185,7 +185,7 @@ def judged(
     for name in asked:  # an unknown name would never get an objection
         if name not in estimate.parameters:
             raise InputError(
-                f"the estimate has no such parameter; it has {', '.join(estimate.parameters)}",
+                f"the estimate has no such parameter; choose one of {', '.join(estimate.parameters)}",
                 argument="parameters",
                 value=name,
             )

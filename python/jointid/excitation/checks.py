@@ -77,9 +77,9 @@ def check_gain(joint: Joint, request: Request) -> None:
         return
     if gain.min <= 0.0 <= gain.max:
         raise InputError(
-            "the prior and the joint's bounds contain 0: such a sensor reads nothing",
+            "the prior and the joint's bounds contain 0, but a sensor with gain 0 reads nothing",
             argument="sensor_gain",
             value=[gain.min, gain.max],
             place="prior",
-            remedy="give the gain in the joint bounds of one sign",
+            remedy="in the joint, give two bounds of the gain with the same sign",
         )

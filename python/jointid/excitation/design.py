@@ -31,7 +31,7 @@ class Design(DesignFields, KeptResult):
     trajectory : Trajectory
         The motion, for `simulate` and for a session.
     joint : Joint
-        The nominal joint: the values of the joint, or the middles of the prior's ranges.
+        Nominal joint, with the joint's parameter values or the middles of the prior's ranges.
     controller : Controller
         The controller that drives the joint.
     sensors : Sensors
@@ -39,29 +39,29 @@ class Design(DesignFields, KeptResult):
     limits : MotionLimits
         The limits of the motion.
     peaks : Peaks
-        Largest values over joints drawn from the prior, noise included.
+        Largest values of the motion over joints drawn from the prior, including noise.
     parameters : mapping of str to ExpectedError
-        Expected errors of the parameters that the motion was designed for.
+        Expected errors of the parameters for which the motion was designed.
     reference : mapping of str to float
-        Relative error of each parameter with the thesis's motion (20 degrees, ending at rest), for the
-        nominal joint with the same controller, sensors and duration. Default: not computed.
+        Relative error of each parameter with the thesis's motion (20 degrees, ending at rest). Nominal joint,
+        controller, sensors and duration are the same. Default: not computed.
     criterion : str
         "worst" or "determinant".
     joints : int
-        Number of joints with which the search evaluated each motion.
+        Number of drawn joints with which the search evaluated each motion.
     evaluations : int
         Number of motions that the search tried.
     seed : int
     duration : float
-        [s]
+        Duration of the motion [s].
     believed : mapping of str to (float, float)
-        The range of each free parameter from which joints were drawn. Default: not known.
+        Range of each free parameter, from which joints were drawn. Default: not known.
     control_period : float
         The controller's period [s]. Default 1 ms.
     weakest : str
         The parameter with the largest relative error.
     limited_by : str
-        Cause that limits that error: a limit that is reached, the duration, the noise, …
+        Cause that limits the error of `weakest`: a reached limit, the duration, the noise, …
 
     Examples
     --------
@@ -80,7 +80,7 @@ class Design(DesignFields, KeptResult):
         return overview_of(self)
 
     def report(self, *, verbose: bool = False) -> str:
-        """Return the expected errors and what limits them, as text.
+        """Return the expected errors and the causes that limit them, as text.
 
         Parameters
         ----------
@@ -92,7 +92,7 @@ class Design(DesignFields, KeptResult):
         return summary(self) if verbose else answer(self)
 
     def summary(self) -> str:
-        """Return everything as text, as `report` with `verbose`."""
+        """Return the complete report as text, as `report(verbose=True)`."""
         return self.report(verbose=True)
 
     def plot(self) -> tuple[Axes, Axes, Axes]:
@@ -108,7 +108,7 @@ class Design(DesignFields, KeptResult):
         return designed_motion(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the content of a saved design in JSON types. A number that is not finite is a text."""
+        """Return the content of a saved design in JSON types. A number that is not finite becomes a text."""
         from jointid.excitation.design_document import document_of
 
         return document_of(self)
@@ -116,41 +116,41 @@ class Design(DesignFields, KeptResult):
     document = to_dict
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the design in a JSON text.
+        """Return the design from a JSON text.
 
         Parameters
         ----------
         text : str
-            Result of `to_json`.
+            JSON text from `to_json`.
 
         Raises
         ------
-        The text is not JSON, is not a design, has a newer schema, or has an invalid value. The message shows
-        the place.
-            Not JSON, not a design, a newer schema, or a value that cannot be used; the error names the place.
+        InputError
+            The text is not JSON, is not a design, has a newer schema, or has an invalid value. The message shows
+            the place in the text.
         """
         from jointid.base.schema import Plain, TableOf, read_json
         from jointid.excitation.design_file import read_design
 
         document = TableOf(Plain()).read(read_json(require_text(text)), "")
         if "design" not in document and "trajectory" not in document:
-            raise InputError("a design is expected, a file that Design.save writes")
+            raise InputError("a design is expected: a file that Design.save wrote")
         return read_design(document, cls)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write a file (.toml) that a session, `simulate` and `load_design` read, or .json; return its path.
+        """Write the design to a .toml or .json file; return its path.
 
-        If writing fails, an existing file is unchanged.
+        A session, `simulate` and `load_design` read the .toml file. If writing fails, an existing file is unchanged.
 
         Raises
         ------
         InputError
-            The ending is another one, or the folder does not exist.
+            The file name has another ending, or the folder does not exist.
         OSError
             The file cannot be written. An existing file is unchanged.
         """
@@ -169,7 +169,7 @@ class Design(DesignFields, KeptResult):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Self:
-        """Return the design in a file; see `load_design`.
+        """Return the design from a file; see `load_design`.
 
         Parameters
         ----------
@@ -178,7 +178,7 @@ class Design(DesignFields, KeptResult):
         Raises
         ------
         InputError
-            The file cannot be read, or is not a design. The message shows file and key.
+            The file cannot be read, or is not a design. The message shows the file and the key.
         """
         from jointid.base.toml_file import read_toml
         from jointid.excitation.design_file import read_design
@@ -198,7 +198,7 @@ class Design(DesignFields, KeptResult):
         Returns
         -------
         DataFrame
-            Indexed by name, with the attributes of `ExpectedError`.
+            Data frame indexed by name, with the attributes of `ExpectedError`.
 
         Raises
         ------
@@ -219,13 +219,13 @@ def load_design(path: str | os.PathLike[str]) -> Design:
     Parameters
     ----------
     path : path
-        File of a design. A motion without expected errors, for example written by hand, is not a design. A
-        session and `jointid simulate --trajectory` read such a motion.
+        File of a design. A file with a motion but without expected errors, for example written by hand, is not a
+        design. A session and `jointid simulate --trajectory` read such a file.
 
     Raises
     ------
     InputError
-        The file cannot be read, or is not a design. The message shows file and key.
+        The file cannot be read, or is not a design. The message shows the file and the key.
 
     Examples
     --------

@@ -15,7 +15,7 @@ from jointid.simulation.setting_tables import controller_table, plain, sensors_t
 
 _SAYS = COMMENTS | {
     "trajectory": "a sum of sines: amplitude · sin(frequency · t + phase)",
-    "believed": "joints were drawn from these ranges; they keep the limits",
+    "believed": "joints drawn from these ranges keep the limits",
     "limits": "limits of the motion",
     "peaks": "largest values over joints drawn from the prior",
     "reference": "largest relative errors in the thesis's motion, for comparison",

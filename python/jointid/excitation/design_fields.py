@@ -43,7 +43,7 @@ class DesignFields:
 
     @property
     def shares(self) -> dict[str, float]:
-        """Used share of each limit, by the limit's name; 1 is all of it."""
+        """Used share of each limit, by the limit's name; 1 means a reached limit."""
         limits, peaks = self.limits, self.peaks
         low, high = limits.position
         middle, half = 0.5 * (low + high), 0.5 * (high - low)

@@ -77,7 +77,7 @@ def read_design(document: Mapping[str, Any], cls: type[Saved], place: str = "") 
         The tables are not a design. The message names the key.
     """
     if "design" not in document and "trajectory" in document:
-        raise InputError("this motion has no table [design], which holds the expected errors")
+        raise InputError("this motion has no table [design] with the expected errors")
     check_schema(document)
     tables = _FILE.read(dict(document), "")
     motion = motion_of({name: tables[name] for name in ("trajectory", "peaks")})

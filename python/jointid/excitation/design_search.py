@@ -17,13 +17,13 @@ class DesignSearch:
     Parameters
     ----------
     evaluations : int
-        Approximate number of motions to try. Default 3600: a few seconds for 12 s of motion.
+        Approximate number of motions to try. Default 3600: the search takes a few seconds for 12 s of motion.
     joints : int
         Number of joints drawn from the prior to evaluate each motion. Default 4.
     rehearsals : int
-        Number of simulated recordings with noise that give the errors of the chosen motion. Default 256.
+        Number of simulated noisy recordings, from which the errors of the chosen motion are computed. Default 256.
     seed : int
-        Default 0. The same seed gives the same motion with any number of threads.
+        Random seed. The same seed gives the same motion with any number of threads. Default 0.
     threads : int
         Number of threads. Default 0: all processors.
 
@@ -68,9 +68,9 @@ class DesignProgress:
     Attributes
     ----------
     number, total : int
-        Motions tried so far, and motions in total.
+        Number of motions tried so far, and total number of motions.
     best : float
-        Criterion of the best motion so far: a relative error.
+        Criterion of the best motion so far, as a relative error.
 
     Examples
     --------

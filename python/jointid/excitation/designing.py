@@ -128,14 +128,14 @@ def design_excitation(
     drive = torque_limit(joint)
     if drive is not None and limits.torque is not None and limits.torque > _SAME_TORQUE * drive:
         raise InputError(
-            f"it is beyond the drive's own limit of {drive:g}",
+            f"this is above the drive's own limit of {drive:g}",
             argument="torque",
             value=limits.torque,
             place="limits",
         )
     if criterion not in CRITERIA:
         raise InputError(
-            f"known are {' and '.join(CRITERIA)}", argument="criterion", value=criterion
+            f"choose one of {', '.join(CRITERIA)}", argument="criterion", value=criterion
         )
     check_length(positive("duration", duration), positive("control_period", control_period))
     joint = _with_model(joint)
@@ -335,7 +335,7 @@ class _Designing:
                 and _judged(judge, _trajectory(judge, found.best)) is None
             ):
                 raise InputError(
-                    "on each motion tried, the loop is unstable for some joint of the prior",
+                    "in each tried motion, the control loop is unstable for at least one joint of the prior",
                     argument="controller",
                     remedy="narrow the prior, or give the joint's own controller",
                 )

@@ -74,14 +74,13 @@ def what_limits(design: Design, situation: Situation, judgement: _core.MotionJud
     """Return one sentence with the causes: limits that are reached, correlated parameters, noise and duration."""
     reasons = []
     if not design.parameters[design.weakest].relative < _LARGE:
-        reasons.append("no motion within the limits was found that determines it")
+        reasons.append("no motion within the limits determines this parameter")
     reached = [name.replace("_", " ") for name, share in design.shares.items() if share >= _REACHED]
-    if reached:
-        reasons.append(f"the limit of {' and '.join(reached)}")
-    reasons.append(f"the duration of {design.duration:g} s and the noise of the sensors")
-    text = ", ".join(reasons)
+    limits = [f"the limit of {' and '.join(reached)}"] if reached else []
+    limits.append(f"the duration of {design.duration:g} s and the noise of the sensors")
+    text = "; ".join((*reasons, f"causes: {', '.join(limits)}"))
     partner = _partner(situation, judgement, design.weakest)
-    return text + (f"; its error is correlated with that of {partner}" if partner else "")
+    return text + (f"; the error is correlated with the error of {partner}" if partner else "")
 
 
 def _partner(situation: Situation, judgement: _core.MotionJudgement, weakest: str) -> str:

@@ -19,7 +19,7 @@ class Known:
     Attributes
     ----------
     names : tuple of str
-        Known parameters. Nothing is known about others.
+        Known parameters. Nothing is known about other parameters.
     information : ndarray, shape (p, p)
         Inverse of the covariance [1 / product of the two units]; singular if a combination is not determined.
 
@@ -38,13 +38,13 @@ class Known:
         matrix = np.asarray(self.information, dtype=np.float64)
         if matrix.shape != (count, count) or not np.isfinite(matrix).all():
             raise InputError(
-                f"a finite matrix of {count} x {count} is expected, as many as names",
+                f"a finite matrix of {count} x {count} is expected, one row for each name",
                 argument="known.information",
             )
         object.__setattr__(self, "information", 0.5 * (matrix + matrix.T))
 
     def stderr(self) -> dict[str, float]:
-        """Return the standard errors from this information, by name; infinite if it does not determine a parameter."""
+        """Return the standard error of each parameter by name; infinite if the information does not determine it."""
         scale = np.sqrt(np.diag(self.information))
         seen = scale > 0.0
         errors = dict.fromkeys(self.names, float("inf"))

@@ -153,7 +153,7 @@ class Situation:
         torque = (1.0 - _TORQUE_MARGIN) * self.torque
         if dry >= torque:
             raise InputError(
-                f"friction, load and gravity alone may need {dry:.3g}, so no motion is possible",
+                f"friction, load and gravity alone may need a torque of {dry:.3g}, so no motion is possible",
                 argument="torque",
                 value=self.torque,
                 place="limits",

@@ -23,7 +23,7 @@ _SMALLEST = 1e-9  # lowest other limit, because the used share divides by it
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MotionLimits:
-    """Limits of a designed motion. The joint's own motion keeps them, in addition to its reference.
+    """Limits of a designed motion. Both the reference and the motion of the joint stay within these limits.
 
     For a prismatic joint, lengths are in m and torques are forces.
 
@@ -36,7 +36,7 @@ class MotionLimits:
     acceleration : float, optional
         Largest magnitude of the reference's acceleration [rad/s²]. Default: not limited.
     torque : float, optional
-        Largest magnitude of the drive torque at the joint [N·m]. Default: not limited; `of` takes the joint's limit.
+        Largest magnitude of the drive torque at the joint [N·m]. Default: not limited; `of` uses the joint's limit.
     sensor_range : float, optional
         Largest magnitude of the torque at the joint's torque sensor [N·m]. Default: not limited.
 
@@ -70,14 +70,14 @@ class MotionLimits:
         low, high = (finite_number(_OWNER, "position", bound) for bound in window)
         if not low < high:
             raise InputError(
-                "the first must be below the second",
+                "the first value must be below the second",
                 argument="position",
                 value=[low, high],
                 place=_OWNER,
             )
         if high - low < _NARROWEST or max(abs(low), abs(high)) > _FARTHEST:
             raise InputError(
-                f"at least {_NARROWEST:g} wide and at most {_FARTHEST:g} from 0 is expected",
+                f"a window that is at least {_NARROWEST:g} wide and at most {_FARTHEST:g} from 0 is expected",
                 argument="position",
                 value=[low, high],
                 place=_OWNER,
@@ -94,21 +94,21 @@ class MotionLimits:
 
     @classmethod
     def of(cls, given: MotionLimits | Mapping[str, Any] | None, joint: Joint) -> MotionLimits:
-        """Return limits. Missing limits come from the joint.
+        """Return motion limits. The joint's limits replace missing limits.
 
         Parameters
         ----------
         given : MotionLimits, mapping or None
-            A mapping has fields of `MotionLimits`.
+            Stated limits. A mapping contains fields of `MotionLimits`.
         joint : Joint
-            The joint. Nine tenths of its window and velocity are used, because a session stops at them. Its
-            torque limit (the smaller of torque and current) is used completely.
+            Joint with limits. Nine tenths of its position window and velocity limit are used, because a session
+            stops at the full limits. Its torque limit (the smaller limit of torque and current) is used completely.
 
         Raises
         ------
         InputError
-            A name is unknown, a value is invalid, a required limit is missing, or the joint does not have the
-            sensor of a given range.
+            A name is unknown, a value is invalid, a required limit is missing, or `sensor_range` is set for a joint
+            without a torque sensor.
 
         Examples
         --------
@@ -139,7 +139,8 @@ class MotionLimits:
             first, *others = missing
             also = f"{' and '.join(others)} {'is' if len(others) == 1 else 'are'} needed"
             raise InputError(
-                "it is needed, and the joint's limits state none" + f"; {also}, too" * bool(others),
+                "this limit is needed, but the joint does not state it"
+                + f"; {also}, too" * bool(others),
                 argument=first,
                 place=_OWNER,
             )
@@ -165,14 +166,14 @@ def _within(limits: MotionLimits, joint: Joint) -> None:
     fastest, window = joint.limits.velocity, joint.limits.position
     if fastest is not None and limits.velocity > fastest:
         raise InputError(
-            f"it is beyond the joint's own limit of {fastest:g}",
+            f"this is above the joint's own limit of {fastest:g}",
             argument="velocity",
             value=limits.velocity,
             place=_OWNER,
         )
     if window is not None and not window[0] <= limits.position[0] < limits.position[1] <= window[1]:
         raise InputError(
-            f"it reaches beyond the joint's own window, {window[0]:g} to {window[1]:g}",
+            f"this is outside the joint's own window, {window[0]:g} to {window[1]:g}",
             argument="position",
             value=list(limits.position),
             place=_OWNER,

@@ -41,7 +41,9 @@ def motion_after(
     wanted = posterior.names if parameters is None else tuple(parameters)
     for name in wanted:
         if name not in posterior.names:
-            free = f"free are {', '.join(posterior.names)}" if posterior.names else "none is free"
+            free = (
+                f"choose one of {', '.join(posterior.names)}" if posterior.names else "none is free"
+            )
             raise InputError(
                 f"the estimate has no free parameter of this name; {free}",
                 argument="parameters",

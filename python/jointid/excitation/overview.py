@@ -36,13 +36,11 @@ def _answer(design: DesignFields) -> tuple[str, ...]:
         said = f"Usable with care: {unknown or 'a parameter'} will not be determined."
         return "usable with care", said
     limited = f" {design.limited_by.capitalize()}." if design.limited_by else ""
-    worst = (
-        f"This is one standard error, the largest of {design.joints} joints drawn from the prior."
-    )
+    worst = f"This is the largest standard error of {design.joints} joints drawn from the prior."
     return (
         "usable",
         f"Usable: no parameter's expected error is above {share_text(errors[name])}, and all limits are kept.",
-        f"{worst} The weakest is {name}.{limited}",
+        f"{worst} The weakest parameter is {name}.{limited}",
     )
 
 

@@ -180,7 +180,7 @@ def joint_of(estimate: Estimate, posterior: Posterior, facts: Joint | None) -> J
     own = estimate.joint
     if facts is not None and (facts.kind, facts.sensor) != (own.kind, own.sensor):
         raise InputError(
-            "its kind and its sensor must be those of the estimate's joint",
+            "kind and sensor must be the same as in the joint of the estimate",
             argument="joint",
         )
     table = dict(base.parameters)

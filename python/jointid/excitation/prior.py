@@ -62,7 +62,9 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     """Return the ranges of the free parameters `names`. Refuse parameters without a range, and list all of them."""
     if prior is not None and (not isinstance(prior, Mapping | Sequence) or isinstance(prior, str)):
         raise InputError(
-            "a range by parameter, or values of joints, are expected", argument="prior", value=prior
+            "a mapping from parameters to ranges, or a list of joints' values, is expected",
+            argument="prior",
+            value=prior,
         )
     if prior is not None and not isinstance(prior, Mapping):
         return _of_joints(names, prior)
@@ -70,7 +72,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     for name in chosen:
         if name not in names:
             raise InputError(
-                f"it is not a free parameter; {suggestion(str(name), list(names))}",
+                f"this is not a free parameter; {suggestion(str(name), list(names))}",
                 argument=str(name),
                 place="prior",
             )
@@ -99,7 +101,7 @@ def ranges_of(joint: Joint, names: Sequence[str], prior: Prior) -> Ranges:
     if unknown:
         one = len(unknown) == 1
         raise InputError(
-            f"nothing says how large {'it' if one else 'they'} may be",
+            f"the range of {'this parameter' if one else 'these parameters'} is unknown",
             argument=", ".join(unknown),
             place="joint",
             remedy=(
@@ -150,6 +152,9 @@ def _range(name: str, bounds: object) -> Range:
     low, high = (finite_number("prior", name, bound) for bound in bounds)
     if not low < high:
         raise InputError(
-            "the first must be below the second", argument=name, value=[low, high], place="prior"
+            "the first value must be below the second",
+            argument=name,
+            value=[low, high],
+            place="prior",
         )
     return low, high

@@ -76,7 +76,7 @@ def rehearse(
                 ready = prepare((recording,), situation.joint, threads=1, on_time=True)
             except InputError as error:
                 raise InputError(
-                    f"no motion was found from which the joint can be identified: {error.reason}",
+                    f"no motion was found that identifies the joint: {error.reason}",
                     remedy="allow more duration, velocity or acceleration, or give another controller",
                 ) from error
             errors[place] = _refitted(ready, true, names) - np.array([true[n] for n in names])

@@ -65,10 +65,10 @@ def request_of(joint: Joint, wanted: Sequence[str] | None) -> Request:
     for name in chosen:
         if name in together:
             raise InputError(
-                f"no motion separates it from {', '.join(sorted(together - {name}))}",
+                f"no motion separates this parameter from {', '.join(sorted(together - {name}))}",
                 argument="parameters",
                 value=name,
-                remedy="fix one of them in the joint",
+                remedy="fix one of these parameters in the joint",
             )
         if name not in names:
             raise InputError(

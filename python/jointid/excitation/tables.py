@@ -162,7 +162,9 @@ def improved(design: DesignFields) -> list[str]:
     if math.isinf(shares[name]):
         return [f"weakest before: {name}, not determined"]
     smaller = shares[name] / design.parameters[name].relative
-    return [f"weakest before: {name}, {share_text(shares[name])}; {smaller:.2g} times smaller now"]
+    return [
+        f"weakest before: {name}, {share_text(shares[name])}; its error is now {smaller:.2g} times smaller"
+    ]
 
 
 def share_text(share: float) -> str:

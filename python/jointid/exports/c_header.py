@@ -38,8 +38,8 @@ def _write(subject: Subject, order: Order) -> bytes:
     )
     notes = [
         f"define {big}_USE_FLOAT before including this file to compute in single precision",
-        "friction is 0 at velocity 0, where a real joint has any friction up to breakaway: pass the reference "
-        "velocity, not the measured one",
+        "friction is 0 at velocity 0, but friction of a real joint at rest has any value up to breakaway: pass the "
+        "reference velocity, not the measured velocity",
     ]
     if law.inertia is None:
         notes.append("inertia: unknown, taken as 0")
@@ -70,7 +70,7 @@ def _write(subject: Subject, order: Order) -> bytes:
         "",
         *_constants(subject, name),
         "",
-        f"/* Sign of the velocity; with a width above 0 [{subject.position_unit}/s] smooth: tanh(velocity / width). */",
+        f"/* Sign of the velocity; with a width above 0 [{subject.position_unit}/s], tanh(velocity / width). */",
         f"static inline {name}_real {name}_sign({name}_real velocity, {name}_real width)",
         "{",
         f"    {name}_real sign = {zero};",
@@ -86,7 +86,7 @@ def _write(subject: Subject, order: Order) -> bytes:
         "    return sign;",
         "}",
         "",
-        "/* Friction at a velocity and a load; terms that do not vanish with the speed are multiplied by the sign. */",
+        "/* Friction at a velocity and a load; terms that are not 0 at speed 0 are multiplied by the sign. */",
         f"static inline {name}_real {name}_friction_smooth({name}_real velocity, {name}_real load, {name}_real width)",
         "{",
         f"    const {name}_real speed = {big}_FABS(velocity);",
@@ -107,13 +107,13 @@ def _write(subject: Subject, order: Order) -> bytes:
         "    return torque;",
         "}",
         "",
-        "/* Friction as identified: its sign is that of the velocity. */",
+        "/* Identified friction, with the sign of the velocity. */",
         f"static inline {name}_real {name}_friction({name}_real velocity, {name}_real load)",
         "{",
         f"    return {name}_friction_smooth(velocity, load, {zero});",
         "}",
         "",
-        "/* Torque of gravity at a position: the drive torque that holds it. */",
+        "/* Torque of gravity at a position: the drive torque that holds the joint there. */",
         *_function(
             f"{name}_gravity",
             name,
@@ -153,7 +153,7 @@ def _write(subject: Subject, order: Order) -> bytes:
             used=bool(law.functions("inertia")),
         ),
         "",
-        "/* Slope of the inertia over the position: half of its product with velocity^2 is a torque. */",
+        "/* Slope of the inertia over the position: the torque contains slope * velocity^2 / 2. */",
         *_function(
             f"{name}_inertia_slope",
             name,
@@ -162,7 +162,7 @@ def _write(subject: Subject, order: Order) -> bytes:
             zero,
         ),
         "",
-        "/* Drive torque at the output for a motion: inertia, friction, position, offset. */",
+        "/* Drive torque at the output for a motion: the sum of all terms of the model. */",
         f"static inline {name}_real {name}_torque({name}_real position, {name}_real velocity,",
         f"    {name}_real acceleration, {name}_real load, {name}_real width)",
         "{",
@@ -220,7 +220,7 @@ def _constants(subject: Subject, name: str) -> list[str]:
     add(
         "SMOOTH_WIDTH",
         smooth_width(subject),
-        f"a width for the smooth sign [{subject.position_unit}/s]: 1 % of the known speeds",
+        f"width for the smooth sign [{subject.position_unit}/s]: 1 % of the largest known speed",
     )
     return lines
 
@@ -286,7 +286,8 @@ def _check(subject: Subject, name: str) -> list[str]:
         "/* Compare the functions with jointid's own values; return the number of differences (0: all agree). */",
         f"static inline int {name}_self_check(void)",
         "{",
-        "    /* position, velocity, acceleration, load, width, reading; friction, torque, sensor torque */",
+        "    /* 6 inputs: position, velocity, acceleration, load, width, reading;",
+        "       3 results: friction, torque, sensor torque */",
         f"    static const {name}_real table[{len(rows)}][9] = {{",
         *table,
         "    };",

@@ -37,36 +37,37 @@ def export(
     """Write an identified joint for a simulator, a controller, a PLC or Simulink.
 
     Each file states its source, units, signs and gear ratio, and the standard error and 95 % interval of each
-    parameter. It lists the parameters that the recording does not determine, and the effects that it cannot
-    represent. Numbers have all their digits. The file is written completely or not at all.
+    parameter. The file lists the parameters that the recording does not determine, and the effects that the format
+    cannot represent. Numbers have all digits. The file is written completely or not at all.
 
     Parameters
     ----------
     source : Estimate, Joint, ServoEstimate or RobotEstimate
-        A joint needs values for the parameters of its model; it has no uncertainty. A servo is exported as
-        its identified joint, also without uncertainty. A whole robot is written into its URDF, which `into`
-        names: damping and friction of every joint.
+        Identified values. A joint needs values for all parameters of its model; its file states no uncertainty. A
+        servo is exported as its identified joint, also without uncertainty. Damping and friction of a whole robot
+        are written into its URDF, the file `into`.
     path : path-like
-        The file ending chooses the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC 61131-3
-        Structured Text), ``.mat`` (Simulink).
+        File name. Its ending determines the target: ``.xml`` (MuJoCo), ``.urdf``, ``.h`` (C99), ``.st`` (IEC
+        61131-3 Structured Text), ``.mat`` (Simulink).
     target : {"mujoco", "urdf", "c", "st", "matlab"}, optional
-        A target that replaces the one of the file ending.
+        Target that overrides the file ending.
     into : path-like, optional
         An existing MuJoCo or URDF file. The new file is a copy with new damping and friction of one joint. In
-        MuJoCo, its armature and the stiffness of its dry friction also change. A comment is added before the
-        joint. Everything else keeps its bytes. May be `path` itself. Default: a model of this joint alone.
+        MuJoCo, the joint's armature and the stiffness of its dry friction also change. A comment is added before
+        the joint. All other bytes are unchanged. `into` may be the same file as `path`. Default: a new file with a
+        model of this joint alone.
     joint_name : str, optional
         Name of the joint in `into`. Default: the joint's own name.
     approximate : bool
-        MuJoCo and URDF have Coulomb and viscous friction, the same in both directions. False (default)
-        refuses other friction. True writes the nearest Coulomb and viscous friction over the recorded speeds.
-        The file states the parts that are lost.
+        Whether to approximate friction. MuJoCo and URDF have only Coulomb and viscous friction, equal in both
+        directions. False (default) refuses other friction. True writes the nearest Coulomb and viscous friction
+        over the recorded speeds. The file states the lost effects.
     speed : float, optional
-        Largest speed for the nearest friction and for tables [rad/s or m/s]. Default: the largest speed of the
+        Largest speed of the approximated friction and of tables [rad/s or m/s]. Default: the largest speed of the
         estimate's recordings, or the joint's limit.
     inertia : bool
-        Only for a whole robot: whether to write the links' inertia too, identified with ``inertia="free"`` or
-        "scaled". The inertia of a link then includes all bodies fixed to it. Default False.
+        Whether to write the links' inertia too, for a whole robot identified with ``inertia="free"`` or "scaled".
+        The inertia of a link then includes all bodies fixed to it. Default False.
 
     Returns
     -------
@@ -76,8 +77,8 @@ def export(
     Raises
     ------
     InputError
-        The file ending is unknown, a parameter has no value, `into` has no such joint, the target cannot
-        represent the model, or scipy, which writes ``.mat``, is not installed.
+        The file ending is unknown, a parameter has no value, `into` has no such joint, the target cannot represent
+        the model, or scipy is not installed (for ``.mat``).
     OSError
         The file cannot be written.
 
@@ -97,7 +98,7 @@ def export(
     if isinstance(source, Mapping):
         names = [str(name) for name in source]
         raise InputError(
-            f"these are the estimates of several joints ({', '.join(names)}); one is expected",
+            f"these are the estimates of several joints ({', '.join(names)}); one estimate is expected",
             argument="source",
             remedy=f"choose one: `source[{names[0]!r}]`" if names else (),
         )
@@ -108,7 +109,7 @@ def export(
     require_kind("source", source, Estimate, Joint)
     check_flag("", "inertia", inertia)
     if inertia:
-        raise InputError("this is for a whole robot", argument="inertia", value=inertia)
+        raise InputError("this option is only for a whole robot", argument="inertia", value=inertia)
     place = require_path("path", path)
     if target is not None:
         require_kind("target", target, str)
@@ -125,7 +126,7 @@ def export(
     )
     if joint_name is not None and order.into is None:
         raise InputError(
-            "it names a joint in a file to edit, but no file is given",
+            "this option names a joint in a file to edit, but `into` is missing",
             argument="joint_name",
             value=joint_name,
         )
@@ -154,11 +155,11 @@ def _export_robot(
             value=str(path) if target is None else target,
             remedy="name a file to write that ends in .urdf"
             if target is None
-            else "urdf is the target",
+            else "use the target urdf",
         )
     if into is None:
         raise InputError(
-            "a whole robot is written into its URDF: name that file",
+            "a whole robot is written into its URDF: name this URDF",
             argument="into",
             remedy=Action("call", {"into": ...}, function="export"),
         )
@@ -189,7 +190,7 @@ def _existing(target: Target, into: str | os.PathLike[str] | None, joint: str) -
         able = " and ".join(each.name for each in TARGETS if each.edits)
         raise InputError(f"only {able} files can be edited", argument="into", value=str(path))
     if not joint:
-        raise InputError("the joint of the file is not named", argument="joint_name")
+        raise InputError("the name of the joint in the file is missing", argument="joint_name")
     try:
         if path.stat().st_size > _LARGEST:
             raise InputError("the file is too large", argument="into", value=str(path))

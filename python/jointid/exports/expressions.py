@@ -111,7 +111,7 @@ def constants(law: Law) -> dict[str, float]:
 def origin(parameter: str) -> str:
     """Return the source of a number in the law that is not a parameter."""
     return (
-        "angle that the terms of position are centred at, from the model"
+        "centre angle of the terms that depend on the position"
         if parameter.endswith("_centre")
         else "from the link"
     )

@@ -48,10 +48,10 @@ def body_of(subject: Subject) -> Body:
     total = law.total_inertia
     if total is None or total <= 0.0:
         raise InputError(
-            "has no value, which a model for simulation needs",
+            "a model for simulation needs this value",
             argument="inertia",
             place=joint.owner,
-            remedy="give the joint inertia or rotor_inertia, or identify it",
+            remedy="give the joint inertia or rotor_inertia, or identify the joint",
         )
     least = _NOTHING * total
     weight = sum(each.amplitude for each in law.over("gravity"))
@@ -73,7 +73,7 @@ def body_of(subject: Subject) -> Body:
     inner = joint.link_inertia - link.mass * link.centre_of_mass**2
     if inner < -1e-9 * joint.link_inertia:
         raise InputError(
-            "it is below mass · centre_of_mass², which is impossible for a body",
+            "the link's inertia cannot be below mass · centre_of_mass²",
             argument="inertia",
             value=joint.link_inertia,
             place=f"{joint.owner}: link",
@@ -93,7 +93,7 @@ def _left(joint: Joint, total: float) -> float:
     drive = total - joint.link_inertia
     if drive < 0.0:
         raise InputError(
-            f"it must be at least the link's inertia, {joint.link_inertia:.6g}, because it includes the link",
+            f"this inertia includes the link, so it must be at least the link's inertia, {joint.link_inertia:.6g}",
             argument="parameters.inertia",
             value=total,
             place=joint.owner,

@@ -183,7 +183,7 @@ def _centred(joint: Joint, values: Mapping[str, float]) -> tuple[Centred, ...]:
             continue
         if own.centre is None:
             raise InputError(
-                "has no centre, which an export needs",
+                "an export needs the centre of this term",
                 argument=f"terms.{POSITION}",
                 value=str(own),
                 place=joint.owner,

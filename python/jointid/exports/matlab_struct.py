@@ -29,18 +29,18 @@ def _write(subject: Subject, order: Order) -> bytes:
             remedy="pip install scipy",
         ) from error
     notes = [
-        "friction.velocity has no 0: between its two middle rows a lookup is a steep line through 0",
-        "NaN is an unknown value",
+        "friction.velocity has no row at 0: between the two middle rows, interpolation gives a steep line through 0",
+        "NaN stands for an unknown value",
     ]
     if subject.law.loaded_by:
-        notes.append("lookup tables are without load; load_friction is per load")
+        notes.append("lookup tables are valid at zero load; load_friction is the friction per load")
     if subject.speed is None:
-        notes.append("the range of the tables is arbitrary: the range of speeds is unknown")
+        notes.append("the range of the tables is arbitrary, because the range of speeds is unknown")
     law = subject.law
     if law.centred:
         notes.append(
             "position_torque.centred and position_inertia: cos * (cos(position - centre) - 1) + sin * sin(position "
-            "- centre); where the inertia changes by it, the torque also has slope * velocity^2 / 2"
+            "- centre); if the inertia varies, the torque also needs slope * velocity^2 / 2"
         )
     struct = {
         "name": subject.joint.name,

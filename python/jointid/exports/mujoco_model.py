@@ -54,7 +54,7 @@ def loss_notes(subject: Subject, nearest: Nearest) -> list[str]:
         f"friction here is {nearest.constant!r} {unit} + {nearest.slope!r} {unit}*s/{subject.position_unit} * speed, "
         f"the least-squares fit over speeds up to {nearest.speed!r} {subject.position_unit}/s, equally weighted",
         f"largest difference of the torque over this range: {nearest.worst:.4g} {unit}"
-        f"{load}; of the friction, root mean square: {nearest.rms:.4g} {unit}",
+        f"{load}; root mean square difference of the friction: {nearest.rms:.4g} {unit}",
     ]
 
 
@@ -66,21 +66,23 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     armature = drive_inertia(subject)
     if armature is None:
         notes.append(
-            "armature is unchanged: the identified inertia includes the link's, which this model already has"
+            "armature is unchanged: the identified inertia includes the link's inertia, but this model already has a "
+            "link"
         )
     else:
         changes["armature"] = repr(armature)
     slides = joint.attributes.get("type") == "slide"
     changes |= _soft_friction(_body_share(subject, armature) if slides else 1.0)
     notes.append(
-        f"dry friction is a soft constraint: below about {_creep(subject, nearest):.2g} {subject.position_unit}/s (with"
-        f" MuJoCo's own solreffriction and solimpfriction: {_creep(subject, nearest) * _USUAL:.2g}) it fades, and the"
-        f" joint creeps; time steps above {_CONSTANT / 2.0!r} s soften it in proportion"
+        f"dry friction is a soft constraint: below about {_creep(subject, nearest):.2g} {subject.position_unit}/s, "
+        "friction fades and the joint creeps; with MuJoCo's default solreffriction and solimpfriction, this speed is "
+        f"{_creep(subject, nearest) * _USUAL:.2g}; time steps above {_CONSTANT / 2.0!r} s make the constraint softer "
+        "in proportion"
     )
     if slides and changes.get("armature"):
         notes.append(
-            "for a prismatic joint, MuJoCo softens friction by the body's mass without the armature: give the body "
-            "the mass, or the joint a solimpfriction nearer to 1"
+            "for a prismatic joint, MuJoCo softens friction by the body's mass without the armature: add the mass to "
+            "the body, or set the joint's solimpfriction nearer to 1"
         )
     notes += _elsewhere(subject)
     if subject.law.offset:
@@ -115,7 +117,7 @@ def _elsewhere(subject: Subject) -> list[str]:
     """Return notes on effects that the surrounding model must represent."""
     notes = []
     if subject.law.over("gravity"):
-        notes.append("gravity: it follows from the masses of this file")
+        notes.append("gravity: MuJoCo computes it from the masses of this file")
     if subject.law.sensor is not None:
         notes.append("calibration of the torque sensor")
     return notes
@@ -131,7 +133,7 @@ def _model(subject: Subject, nearest: Nearest, name: str) -> str:
         notes.append(body.note)
     notes.append(
         f"dry friction is a soft constraint: below about {_creep(subject, nearest):.2g} "
-        f"{subject.position_unit}/s it fades, and the joint creeps"
+        f"{subject.position_unit}/s, friction fades and the joint creeps"
     )
     if joint.voltage is not None:
         notes += VOLTAGE_NOTES

@@ -100,7 +100,7 @@ def nearest_friction(subject: Subject, *, approximate: bool, target: str) -> Nea
         )
     if subject.speed is None:
         raise InputError(
-            "the nearest friction needs a range of speeds, which a joint file does not have",
+            "the nearest friction needs a range of speeds, but a joint file has no such range",
             argument="speed",
             remedy=Action("call", {"speed": ...}, "the largest speed", "export"),
         )

@@ -39,27 +39,28 @@ def statements(subject: Subject, *, notes: Sequence[str] = ()) -> list[str]:
         f"Source: {subject.source}.",
         f"Model: {subject.model}.",
         f"Units: SI ({subject.position_unit}, {subject.position_unit}/s, {subject.torque_unit}), on the output side"
-        " of the gear (joint side) unless said otherwise.",
-        f"Sign: a positive {force} of the drive moves the joint towards positive position; friction has the sign of the"
-        f" velocity: it is the {force} that the drive needs in addition.",
+        " of the gear (joint side) unless stated otherwise.",
+        f"Sign: a positive {force} of the drive moves the joint towards positive position. Friction has the sign of the"
+        f" velocity: the drive needs this {force} in addition.",
         f"Gear ratio {joint.gear_ratio!r} (motor angle per joint position): motor {force} = {force} / gear ratio.",
     ]
     if subject.speed is not None:
         lines.append(
-            f"Speeds up to {subject.speed!r} {subject.position_unit}/s are known; beyond, friction is extrapolated."
+            f"Speeds up to {subject.speed!r} {subject.position_unit}/s are known; friction above this speed is "
+            "extrapolated."
         )
     lines.append("Parameters:")
     lines += [f"  {value_line(each)}" for each in subject.values]
     if subject.undetermined:
         names = ", ".join(subject.undetermined)
-        lines.append(f"The recording did not determine these values, or not well: {names}.")
+        lines.append(f"The recording determines these values poorly or not at all: {names}.")
     if subject.unknown:
         lines.append(f"Values of unknown uncertainty: {', '.join(subject.unknown)}.")
     if subject.findings:
         lines.append("Warnings of the identification:")
         lines += [f"  {each}" for each in subject.findings]
     if subject.others:
-        notes = [*notes, f"not in this file, and has to be added: {subject.others}"]
+        notes = [*notes, f"this file lacks {subject.others}: add this {force} to the simulation"]
     if notes:
         lines.append("Notes:")
         lines += [f"  {each}" for each in notes]

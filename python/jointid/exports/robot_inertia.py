@@ -41,7 +41,7 @@ def _check(estimate: RobotEstimate) -> None:
     again = Action("call", {"inertia": FREE}, function="identify_robot")
     if estimate.inertia == URDF:
         raise InputError(
-            "the links' inertia was taken from the URDF as it is",
+            "the links' inertia was not identified: the values are those of the URDF",
             argument="inertia",
             value=True,
             remedy=again,
@@ -99,7 +99,9 @@ def _ends(joint: Element, found: Sequence[Element], place: str) -> tuple[str, st
     named = {each.tag: each.attributes.get("link", "") for each in found if each.parent == number}
     if not {"parent", "child"} <= named.keys():
         name = joint.attributes["name"]
-        raise InputError("it has no parent and child", argument="into", value=name, place=place)
+        raise InputError(
+            "this joint has no parent and child", argument="into", value=name, place=place
+        )
     return named["parent"], named["child"]
 
 
@@ -147,12 +149,12 @@ def _words(estimate: RobotEstimate, number: int) -> Iterator[str]:
     joint = estimate.joints[name]
     if estimate.inertia == FREE:
         yield (
-            f"inertia of all that {name} moves before the next joint; other inertias give the same "
+            f"inertia of all bodies between {name} and the next joint; other inertias give the same "
             "motion,"
         )
-        yield "so only the complete set is valid, not single numbers"
+        yield "so use only the complete set, not single numbers"
     else:
-        yield f"inertia of all that {name} moves before the next joint: the URDF's, scaled"
+        yield f"inertia of all bodies between {name} and the next joint: scaled from the URDF"
     rotor = joint.parameters.get("rotor_inertia")
     if rotor is not None:
         yield f"without the motor's inertia, which URDF cannot hold: {rotor.value!r} {rotor.unit} at the joint"

@@ -27,10 +27,13 @@ def robot_in_urdf(
         lost = _lost(joint)
         if lost and not approximate:
             raise InputError(
-                f"URDF has Coulomb and viscous friction of single joints; {joint.name} has {' and '.join(lost)}",
+                f"URDF has only Coulomb and viscous friction of single joints; {joint.name} also has "
+                f"{' and '.join(lost)}",
                 argument="approximate",
                 value=False,
-                remedy=Action("call", {"approximate": True}, "to leave that out", "export"),
+                remedy=Action(
+                    "call", {"approximate": True}, "to leave this friction out", "export"
+                ),
             )
         content = _with_dynamics(content, place, joint)
     return with_link_inertias(estimate, content, place) if inertia else content

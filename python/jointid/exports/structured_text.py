@@ -26,9 +26,9 @@ _TOLERANCE = 1e-9
 def _write(subject: Subject, order: Order) -> bytes:
     name = identifier(order.name)
     notes = [
-        "friction is 0 at velocity 0, where a real joint has any friction up to breakaway: connect the "
-        "reference velocity, not the measured one",
-        "only elements of the second edition of IEC 61131-3 are used, so that older systems can read it",
+        "friction is 0 at velocity 0, but friction of a real joint at rest has any value up to breakaway: connect "
+        "the reference velocity, not the measured velocity",
+        "only elements of the second edition of IEC 61131-3 are used, so that older systems can read this file",
     ]
     if subject.law.inertia is None:
         notes.append("inertia: unknown, taken as 0")
@@ -106,14 +106,14 @@ def _block(subject: Subject, name: str) -> list[str]:
         f"    acceleration : LREAL; (* {position}/s^2 *)",
         f"    load : LREAL; (* {torque}, for load friction *)",
         "    reading : LREAL; (* raw reading of the torque sensor *)",
-        f"    width : LREAL; (* {position}/s; above 0: the sign of the velocity is tanh(velocity / width) *)",
+        f"    width : LREAL; (* {position}/s; above 0: smooth sign, tanh(velocity / width) *)",
         "END_VAR",
         "VAR_OUTPUT",
         f"    friction : LREAL; (* {torque}, with the sign of the velocity *)",
         f"    gravity : LREAL; (* {torque} *)",
         f"    harmonics : LREAL; (* {torque}, over the joint's angle *)",
         f"    ripple : LREAL; (* {torque}, over the motor's angle *)",
-        f"    torque : LREAL; (* {torque}, of the drive at the output, that the motion needs *)",
+        f"    torque : LREAL; (* {torque}, of the drive at the output, for this motion *)",
         f"    motor_torque : LREAL; (* {torque} *)",
         f"    sensor_torque : LREAL; (* {torque}, behind the sensor, from its reading *)",
         "END_VAR",
@@ -126,7 +126,7 @@ def _block(subject: Subject, name: str) -> list[str]:
         "    fade : LREAL;",
         "    motor_angle : LREAL;",
         "    inertia : LREAL; (* of drive and link, at this position *)",
-        "    inertia_slope : LREAL; (* over the position *)",
+        "    inertia_slope : LREAL; (* of the inertia over the position *)",
         "END_VAR",
         "",
         "speed := ABS(velocity);",
@@ -177,7 +177,7 @@ def _constants(subject: Subject) -> list[str]:
         add(parameter, value, "")
     if subject.joint.torque_constant is not None:
         add("TORQUE_CONSTANT", subject.joint.torque_constant, "motor torque per current [N*m/A]")
-    add("SMOOTH_WIDTH", smooth_width(subject), "a value for width: 1 % of the known speeds")
+    add("SMOOTH_WIDTH", smooth_width(subject), "a value for width: 1 % of the largest known speed")
     return lines
 
 
@@ -201,7 +201,7 @@ def _check(subject: Subject, name: str) -> list[str]:
         )
     ]
     return [
-        "(* Compares the block with jointid's own values: wrong counts the values that differ, 0 if all agree. *)",
+        "(* Compares the block with values of jointid: wrong is the number of different values, 0 if all agree. *)",
         f"FUNCTION_BLOCK FB_{name}_SelfCheck",
         "VAR_OUTPUT",
         "    wrong : INT;",

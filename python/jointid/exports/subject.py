@@ -195,7 +195,7 @@ def _shared(entries: list[ExportedValue]) -> list[ExportedValue]:
             unit=own[0].unit,
             value=float(np.mean([each.value for each in own])),
             remark=(
-                f"mean of {len(own)} recordings, each with its own value: "
+                f"mean of {len(own)} values, one for each recording, from "
                 f"{min(each.value for each in own):.6g} to {max(each.value for each in own):.6g}"
             ),
             doubtful=any(each.doubtful for each in own),
@@ -216,7 +216,7 @@ def _of_joint(joint: Joint) -> Subject:
             if name == "inertia":  # not every target needs it
                 return
             raise InputError(
-                "has no value, which an export needs",
+                "an export needs a value of this parameter",
                 argument=f"parameters.{name}",
                 place=joint.owner,
                 remedy="identify the joint, or give the value",
@@ -224,7 +224,7 @@ def _of_joint(joint: Joint) -> Subject:
         number = given if given is not None else known
         assert number is not None
         fixed = given is None or (parameter is not None and not parameter.vary)
-        remark = "fixed" if fixed else "a joint file does not hold its standard error"
+        remark = "fixed" if fixed else "a joint file does not contain its standard error"
         values[name] = ExportedValue(
             name=name, meaning=meaning, unit=unit, value=number, remark=remark
         )
@@ -250,7 +250,7 @@ def _of_joint(joint: Joint) -> Subject:
         law=law_of(joint, terms, numbers),
         values=tuple(values.values()),
         model=str(joint.model.resolved),
-        source="a joint's stated values (no estimate: their standard errors are not known)",
+        source="stated values of a joint (not an estimate: standard errors are not known)",
         date=_today(),
         version=_core.__version__,
         findings=(),

@@ -60,7 +60,7 @@ def _edited(subject: Subject, nearest: Nearest, into: Existing) -> bytes:
     changes = {"damping": repr(nearest.slope), "friction": repr(nearest.constant)}
     notes = _notes(subject, nearest)
     if subject.law.over("gravity"):
-        notes.append("gravity: it follows from the masses of this file")
+        notes.append("gravity: the simulator computes it from the masses of this file")
     content = into.content
     # From the last to the first, so that earlier positions stay valid.
     edits: list[tuple[Element, dict[str, str]]] = []
@@ -98,7 +98,7 @@ def with_children(
         return content
     if content[: joint.inner].endswith(b"/>"):
         raise InputError(
-            "it has no parent and child",
+            "this joint has no parent and child",
             argument="joint_name",
             value=joint.attributes.get("name"),
         )
@@ -124,7 +124,7 @@ def _limits(subject: Subject) -> dict[str, str]:
 def _robot(subject: Subject, nearest: Nearest, name: str) -> str:
     joint = subject.joint
     body = body_of(subject)
-    notes = [*_notes(subject, nearest), "the link's inertia contains the drive's"]
+    notes = [*_notes(subject, nearest), "the link's inertia contains the inertia of the drive"]
     if body.note:
         notes.append(body.note)
     known = _limits(subject)
@@ -158,7 +158,9 @@ def _robot(subject: Subject, nearest: Nearest, name: str) -> str:
     around = repr(body.inertia + (0.0 if slides else body.drive))
     mass = repr(body.mass + (body.drive if slides else 0.0))
     if body.gravity == 0.0:
-        notes.append("gravity: the model has none; switch it off where this joint is simulated")
+        notes.append(
+            "gravity: the model has none; switch gravity off in the simulation of this joint"
+        )
     elif body.gravity != STANDARD_GRAVITY:
         notes.append(f"gravity of {body.gravity!r} m/s²")
     lines = [

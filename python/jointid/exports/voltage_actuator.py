@@ -11,8 +11,8 @@ GROUP = 1
 """Actuator group of the motor. With the group disabled, the motor turns freely."""
 
 VOLTAGE_NOTES = (
-    "the control is the duty of the servo, -1 to 1; the position loop is not part of it. While the motor is not "
-    f"driven, disable actuator group {GROUP}; otherwise back-EMF still brakes",
+    "the control is the duty of the servo, from -1 to 1; the position loop is not included. While the motor is not "
+    f"driven, disable actuator group {GROUP}; otherwise back-EMF still brakes the joint",
 )
 
 
@@ -25,10 +25,10 @@ def voltage_motor(joint: Joint, drive: VoltageDrive, name: str) -> str:
     ):
         if value is None:
             raise InputError(
-                "a model of a motor on a voltage needs it",
+                "a model of a voltage-driven motor needs this value",
                 argument=argument,
                 place=joint.owner,
-                remedy="give it in the joint file's [drive]",
+                remedy="give this value in the joint file's [drive]",
             )
     assert joint.torque_constant is not None
     assert drive.resistance is not None

@@ -160,9 +160,9 @@ def only(
             "several joints have this name", argument="joint_name", value=name, place=place
         )
     known = [each.attributes["name"] for each in joints if each.attributes.get("name")]
-    says = suggestion(name, known) if known else "no joint in it has a name"
+    says = suggestion(name, known) if known else "no joint in this file has a name"
     includes = any(each.tag in ("include", "xacro:include") for each in found)
-    also = "; it includes other files, which are not searched" if includes else ""
+    also = "; files that this file includes are not searched" if includes else ""
     raise InputError(
         f"there is no such joint; {says}{also}", argument="joint_name", value=name, place=place
     )

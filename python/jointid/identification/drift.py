@@ -104,7 +104,7 @@ def without_drift(
     )
     removed = replace(
         removed,
-        effect=f"the values hold for the middle of the recording; the correction changed {removed.moves}",
+        effect=f"the values are valid in mid-recording; the drift correction changed {removed.moves}",
     )
     return changed_problem, removed
 

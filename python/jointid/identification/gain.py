@@ -58,7 +58,7 @@ def with_instruments(
         reason = _LOADED
         if stated:
             raise InputError(
-                "it cannot be combined with friction that depends on the sensed load",
+                "this residual cannot be combined with friction that depends on the sensed load",
                 argument="residual",
                 value="instruments",
                 remedy=Action("call", {"residual": "sensor"}),

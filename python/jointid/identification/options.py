@@ -31,7 +31,8 @@ class CompareOptions(FitOptions, SearchOptions, total=False):
         float,
         Option(
             kind="float",
-            help="Same as in `identify`, with one value for all models. Default 0: no motion is left out.",
+            help="Speed below which motion is left out, for all models [rad/s or m/s]. Default: 0 (no motion is left "
+            "out).",
             default=0.0,
         ),
     ]

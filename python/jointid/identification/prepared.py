@@ -291,7 +291,7 @@ def prepare(
     merged = stated if joint is None else stated.over(joint.model)
     if merged.name == AUTO and not choose:
         raise InputError(
-            "name the model here; only identify can choose one",
+            "only identify can choose a model; state the model's name here",
             argument="model",
             value=str(merged),
             remedy=Action("call", {"model": "stribeck"}),
@@ -361,5 +361,5 @@ def require_joint(joint: object) -> None:
     """Refuse a value that is neither a joint nor None."""
     if joint is not None and not isinstance(joint, Joint):
         raise InputError(
-            "a Joint is expected; Joint.load reads one from a file", argument="joint", value=joint
+            "a Joint is expected; Joint.load reads a joint file", argument="joint", value=joint
         )

@@ -38,7 +38,7 @@ def suggestion(name: object, known: Collection[str]) -> str:
         return f"did you mean '{close}'?"
     names = list(known)
     rest = f", … ({len(names)} in all)" if len(names) > _LISTED else ""
-    return f"known are {', '.join(names[:_LISTED])}{rest}"
+    return f"choose one of {', '.join(names[:_LISTED])}{rest}"
 
 
 def is_number(value: object) -> bool:
@@ -83,7 +83,7 @@ def positive_number(owner: str, field: str, value: object) -> float:
     number = finite_number(owner, field, value)
     if number <= 0.0:
         raise InputError(
-            "more than 0 is expected; leave it out when it is not known",
+            "more than 0 is expected; leave this value out if it is not known",
             argument=field,
             value=number,
             place=owner,

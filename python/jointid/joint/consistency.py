@@ -36,7 +36,7 @@ def _check_inertia(joint: JointFields, owner: str) -> None:
     product = f"gear_ratio² · rotor_inertia is {reflected:.6g}"
     if not math.isfinite(reflected) or reflected == 0.0:
         raise InputError(
-            f"{product} kg·m², which cannot be used",
+            f"{product} kg·m², but a finite value above 0 is needed",
             argument="rotor_inertia",
             value=joint.rotor_inertia,
             place=owner,
@@ -48,7 +48,7 @@ def _check_inertia(joint: JointFields, owner: str) -> None:
             argument="inertia",
             value=joint.inertia,
             place=owner,
-            remedy="give only one of the two",
+            remedy="give only one of inertia and rotor_inertia",
         )
 
 
@@ -89,5 +89,5 @@ def _check_tolerances(joint: JointFields, owner: str) -> None:
                 argument=name,
                 value=stated,
                 place=f"{owner}: tolerances",
-                remedy='give the fact, or a share such as "5 %"',
+                remedy='state the fact, or give the tolerance as a share such as "5 %"',
             )

@@ -39,9 +39,9 @@ if TYPE_CHECKING:
 class Joint(JointFields):
     """One joint of a robot: drive, friction model, sensor, link, parameters and limits.
 
-    Values are on the output side of the gear, except those marked as motor side. For a prismatic joint,
-    torque means force [N], inertia means mass [kg], radians are metres, and the gear ratio is the motor's
-    angle per travel [rad/m].
+    Values are on the output side of the gear, except those marked as motor side. For a prismatic joint, torques are
+    forces [N], inertias are masses [kg], and angles are travels [m]. Its gear ratio is the motor's angle per travel
+    [rad/m].
 
     Parameters
     ----------
@@ -50,22 +50,22 @@ class Joint(JointFields):
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     inertia : float, optional
-        Inertia of the drive alone, at the output [kg·m²]. Default: from `rotor_inertia`; without it, identified.
-        Without a torque sensor the identified inertia contains the link's.
+        Inertia of the drive alone, at the output [kg·m²]. Default: computed from `rotor_inertia`, or identified if
+        both are unknown. Without a torque sensor, the identified inertia includes the link's inertia.
     rotor_inertia : float, optional
-        Motor side [kg·m²].
+        Inertia of the rotor, motor side [kg·m²].
     gear_ratio : float
-        Motor's angle per output angle; negative if they turn in opposite directions. Default 1.
+        Motor's angle per output angle; negative if motor and output turn in opposite directions. Default 1.
     torque_constant : float, optional
-        Motor side [N·m/A].
+        Torque constant of the motor, motor side [N·m/A].
     torque_hold : {"zoh", "linear"}, optional
         Torque between samples: held ("zoh") or linearly interpolated ("linear"). Default: not known.
     sensor : bool
         Whether the joint has a torque sensor. Default False.
     model : Model, str or mapping
-        Known terms of the torque balance; as text, e.g. ``"stribeck:ripple=2"``. Default: none.
+        Known terms of the torque balance, e.g. the text ``"stribeck:ripple=2"``. Default: none.
     torque_offset : bool, optional
-        Whether the torque has a constant offset. Default: only without a sensor.
+        Whether the torque has a constant offset. Default: True without a torque sensor, otherwise False.
     link : Link, optional
         Default: not known.
     parameters : mapping of str to Parameter
@@ -73,11 +73,11 @@ class Joint(JointFields):
     limits : Limits
         Default: none known.
     tolerances : Tolerances or mapping
-        Tolerances of the facts above, e.g. ``{"torque_constant": "5 %"}``; `identify` shows their effect on each
-        parameter. Default: none.
+        Tolerances of the known values above, e.g. ``{"torque_constant": "5 %"}``. `identify` shows the effect of
+        each tolerance on each parameter. Default: none.
     voltage : VoltageDrive, optional
-        For a servo without a torque signal: the motor's voltage is duty times supply. Default: the drive's input is
-        a torque.
+        Drive of a servo without a torque signal: the motor's voltage is duty times supply voltage. Default: the
+        drive's input is a torque.
 
     Raises
     ------
@@ -96,7 +96,7 @@ class Joint(JointFields):
             raise InputError("text is expected", argument="name", value=self.name, place="joint")
         if any("\ud800" <= letter <= "\udfff" for letter in self.name):
             raise InputError(
-                "it has characters that no file can store",
+                "the name has characters that no file can store",
                 argument="name",
                 value=self.name,
                 place="joint",
@@ -109,7 +109,7 @@ class Joint(JointFields):
         set_numbers(self, owner, ("gear_ratio",), finite_number)
         if self.gear_ratio == 0.0:
             raise InputError(
-                "a value other than 0 is expected; 1 is a joint without a gear",
+                "a value other than 0 is expected; use 1 for a joint without a gear",
                 argument="gear_ratio",
                 value=0,
                 place=owner,
@@ -141,7 +141,7 @@ class Joint(JointFields):
 
     @staticmethod
     def load(path: str | os.PathLike[str]) -> "Joint":
-        """Return the joint in a joint file (TOML).
+        """Return the joint from a joint file (TOML).
 
         Raises
         ------
@@ -153,17 +153,17 @@ class Joint(JointFields):
         return joint_from_document(read_document(path), str(path), Joint)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the joint to a joint file; a failed write changes no file.
+        """Write the joint to a joint file; if writing fails, an existing file is unchanged.
 
         An existing joint file keeps its comments, its order and its tables `user`, `session` and `estimate`.
 
         Raises
         ------
         InputError
-            The name does not end in ``.toml``, the folder does not exist, or an existing file is not a joint
+            The file name does not end in ``.toml``, the folder does not exist, or an existing file is not a joint
             file.
         OSError
-            The file cannot be written; an existing one is untouched.
+            The file cannot be written; an existing file is unchanged.
         """
         from jointid.joint.joint_file import save_joint
 
@@ -188,7 +188,7 @@ class Joint(JointFields):
         return replace(self, **changes)
 
     def with_parameters(self, values: Mapping[str, float]) -> Self:
-        """Return a joint with the values of some parameters changed; their min, max and vary stay.
+        """Return a joint with the values of some parameters changed; min, max and vary are unchanged.
 
         Parameters
         ----------
@@ -198,7 +198,7 @@ class Joint(JointFields):
         Raises
         ------
         InputError
-            A parameter is unknown, or a value is not finite or is outside the parameter's bounds.
+            A parameter is unknown, or its value is not finite or is outside the bounds.
         """
         check_mapping("", "values", values)
         table = merge(self.parameters, {name: {"value": value} for name, value in values.items()})
@@ -207,13 +207,13 @@ class Joint(JointFields):
         return replace(self, parameters=table)
 
     def output_torque(self, recording: "Recording") -> NDArray[np.float64]:
-        """Return the drive's torque at the output, from the first signal that the recording has.
+        """Return the drive's torque at the output, from a recording's torque, motor torque or current.
 
         Parameters
         ----------
         recording : Recording
-            Recording with `torque`, or `motor_torque` (times the gear ratio), or `current` (times torque
-            constant and gear ratio).
+            Recording. Its first available signal is used: `torque`, `motor_torque` times gear ratio, `current`
+            times torque constant and gear ratio.
 
         Returns
         -------

@@ -36,12 +36,12 @@ class JointFields:
 
     @property
     def owner(self) -> str:
-        """The joint as messages name it."""
+        """Name of the joint in messages."""
         return f"joint '{self.name}'" if self.name else "joint"
 
     @property
     def facts(self) -> dict[str, float | None]:
-        """Known facts that may have a tolerance, by the tolerance's name."""
+        """Values that may have a tolerance, by the tolerance's name; None if not known."""
         link = self.link
         return {
             "torque_constant": self.torque_constant,
@@ -55,7 +55,7 @@ class JointFields:
 
     @property
     def reflected_inertia(self) -> float | None:
-        """Inertia of the drive at the output [kg·m²], or [kg]; None if it is not known."""
+        """Inertia of the drive at the output [kg·m²], or mass [kg]; None if not known."""
         if self.inertia is not None or self.rotor_inertia is None:
             return self.inertia
         return self.gear_ratio * self.gear_ratio * self.rotor_inertia
@@ -76,9 +76,10 @@ class JointFields:
 
     @property
     def known_inertia(self) -> float | None:
-        """Inertia that the drive's torque accelerates [kg·m²], or [kg]; None if it is not known.
+        """Inertia that the drive's torque accelerates [kg·m²], or mass [kg]; None if not known.
 
-        A torque sensor measures the link's part; without one, the inertias of link and drive add up.
+        With a torque sensor, this is the drive's inertia. Without a sensor, it is the sum of the drive's and the
+        link's inertia.
         """
         drive = self.reflected_inertia
         return drive if drive is None or self.sensor else drive + self.link_inertia

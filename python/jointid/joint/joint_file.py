@@ -209,7 +209,7 @@ def _check_schema(document: Mapping[str, Any], source: str) -> None:
         raise InputError(f"{SCHEMA} is expected", argument="schema", value=schema, place=source)
     if schema > SCHEMA:
         raise InputError(
-            f"this jointid reads schemas up to {SCHEMA}",
+            f"this version of jointid reads schemas up to {SCHEMA}",
             argument="schema",
             value=schema,
             place=source,
@@ -245,7 +245,7 @@ def _link(document: Mapping[str, Any], table: dict[str, Any], source: str) -> Li
                 "it is missing",
                 argument=needed,
                 place=f"{source}: [link]",
-                remedy="give it, or leave [link] out",
+                remedy="state this value, or leave [link] out",
             )
     try:
         return Link(**table)
@@ -281,7 +281,7 @@ def _refuse_key(source: str, table: str, key: str, known: tuple[str, ...]) -> No
     place = f"{source}: [{table}]" if table else source
     for other, keys in _KEYS.items():
         if key in keys:
-            raise InputError(f"it belongs in [{other}], not here", argument=key, place=place)
+            raise InputError(f"this key belongs in [{other}], not here", argument=key, place=place)
     raise InputError(f"there is no such key; {suggestion(key, known)}", argument=key, place=place)
 
 
@@ -359,7 +359,9 @@ def _edited(before: str, joint: JointFields, path: Path) -> str:
         except ValueError:  # from the parser, or an InputError
             continue
     raise InputError(
-        "the layout of this file cannot be kept", place=str(path), remedy="save it as a new file"
+        "the layout of this file cannot be kept",
+        place=str(path),
+        remedy="save the joint as a new file",
     )
 
 

@@ -33,14 +33,14 @@ class Link:
     angle : float
         Angle of the centre of mass above the horizontal at position zero [rad]. Default 0.
     inertia : float, optional
-        Inertia about the joint's axis [kg·m²]. Default: a point mass.
+        Inertia about the joint's axis [kg·m²]. Default: inertia of a point mass.
     gravity : float
-        Gravity perpendicular to the axis [m/s²]. Default 9.80665.
+        Component of gravity perpendicular to the axis [m/s²]. Default 9.80665.
 
     Raises
     ------
     InputError
-        A value is not finite, or is negative (except the angle).
+        A value is not finite, or a value other than the angle is negative.
 
     Examples
     --------
@@ -62,15 +62,14 @@ class Link:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limits:
-    """Limits that the joint must not exceed; None means not known.
+    """Limits that the joint must not exceed; None: the limit is not known.
 
     Parameters
     ----------
     position : tuple of float, optional
         Lowest and highest position [rad] or [m].
     velocity, torque, current : float, optional
-        Largest magnitudes: velocity [rad/s] or [m/s], torque at the output [N·m] or [N], current in the
-        motor [A].
+        Largest magnitude of velocity [rad/s] or [m/s], torque at the output [N·m] or [N], and motor current [A].
 
     Raises
     ------

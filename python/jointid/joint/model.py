@@ -35,8 +35,8 @@ _LISTS = ("ripple", "harmonics", "per_recording")
 class Model:
     """The terms of a joint's torque balance; a field that is None is not stated.
 
-    If a call's model leaves a field at None, the joint's model gives it; if that leaves it at None too, the default
-    applies. As text, a model is its name, then its options, each after a colon:
+    If a field is None in a call's model, the field of the joint's model applies. If both are None, the default
+    applies. The text of a model is its name, followed by its options, each after a colon:
     ``"stribeck:asymmetric:ripple=2,4"``, ``":gravity=free"``.
 
     Parameters
@@ -44,34 +44,34 @@ class Model:
     name : str, optional
         Friction model: "coulomb_viscous", "stribeck", "stribeck_general" (with a free exponent),
         "smooth_coulomb_viscous" (Coulomb friction as a hyperbolic tangent of the velocity), or "auto" (default).
-        With "auto", `identify` chooses between the first two by the torque that they predict. A simulation has no
-        recording to choose by and takes "coulomb_viscous".
+        With "auto", `identify` chooses "coulomb_viscous" or "stribeck", by the better prediction of the torque. A
+        simulation makes no choice and uses "coulomb_viscous".
     gravity : {"none", "known", "free"}, optional
         Gravity torque that loads the drive and not the sensor: none, computed from the joint's link ("known"), or
-        identified ("free"). Default: none. If `identify` chooses the friction model, it also chooses between none
-        and free for a revolute joint that has no sensor, link, harmonic of order 1 or own torque term.
+        identified ("free"). Default: none. If `identify` chooses the friction model of a revolute joint, it also
+        chooses none or free for gravity. A sensor, a link, a harmonic of order 1 or an own torque term excludes
+        this choice.
     asymmetric : bool, optional
         Whether friction differs between the two directions. Default False.
     ripple : collection of float, optional
         Orders of a torque that is periodic in the motor's angle, e.g. (2,) for a strain-wave gear. Each order has
-        a sine and a cosine coefficient [N·m]. A single order may be a number. Default none.
+        a sine and a cosine coefficient [N·m]. A single order can be written as a number. Default none.
     harmonics : collection of float, optional
         Orders of a torque that is periodic in the joint's angle. Default none.
     load_friction : bool or {"drive", "link"}, optional
-        Whether friction grows with the load: with the magnitude of the drive's torque ("drive") or of the torque
-        behind the gear ("link"), known from a sensor or from gravity. True: the one that fits better.
-        Default False.
+        Whether friction grows with the load. "drive": the load is the magnitude of the drive's torque. "link": the
+        load is that of the torque behind the gear, known from a sensor or from gravity. True: the load with the
+        better fit. Default False.
     per_recording : collection of str, optional
-        Coefficients with a separate value for each of several recordings, e.g. ("torque_offset",).
-        Default none.
+        Coefficients that have a separate value for each recording, e.g. ("torque_offset",). Default none.
     terms : mapping of str to str, optional
-        Own terms: name of an extra signal s → kind of term; ``+`` joins several kinds.
-        "viscous", "coulomb", "coupling": a coefficient times s, the sign of s, or the rate of s.
+        Own terms: kind of term, by the name of an extra signal s. ``+`` joins several kinds.
+        "viscous": coefficient times s. "coulomb": coefficient times sign of s. "coupling": coefficient times rate of s.
         "known": s is a torque. "scaled": s is a torque with a free gain.
-        "inertia": s is an inertia J with the torque J a. "scaled_inertia": J a with a free gain.
-        "inertia_own": J a + J' v²/2, if J depends on the joint's own position.
-        "inertia_others": J a + (dJ/dt) v, if J depends on other joints' positions.
-        "inertia_over", "torque_over": identified functions of the angle s, or of ``position``, centered in its range.
+        "inertia": s is an inertia J, and the torque is J a. "scaled_inertia": the torque is J a with a free gain.
+        "inertia_own": the torque is J a + J' v²/2, if J depends on the joint's own position.
+        "inertia_others": the torque is J a + (dJ/dt) v, if J depends on other joints' positions.
+        "inertia_over", "torque_over": identified function of the angle s, or of ``position``, centered in its range.
         ``@rate`` after a kind uses the rate of s instead of s. Default none. See docs/own_terms.md.
 
     Raises
@@ -127,12 +127,12 @@ class Model:
         ----------
         value : Model, str, mapping or None
         argument : str
-            Name of the argument, for the error. Default "model".
+            Name of the argument in the error. Default "model".
 
         Raises
         ------
         InputError
-            The value has another type, or a field is invalid.
+            The value has a wrong type, or a field is invalid.
         """
         if isinstance(value, Model):
             return value
@@ -218,7 +218,7 @@ class Model:
 
     @property
     def resolved(self) -> ResolvedModel:
-        """Return all fields; unset fields have their defaults, and "auto" has the default name."""
+        """Return the model with all fields. Unset fields have their defaults, also the name "auto"."""
         return _resolved(self)
 
     def __reduce__(self) -> tuple[Any, ...]:

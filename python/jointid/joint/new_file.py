@@ -31,16 +31,16 @@ class Fact:
 
 FACTS: tuple[Fact, ...] = (
     Fact("drive", "gear_ratio", "101", "motor angle per joint angle, negative if they turn in opposite directions"),
-    Fact("drive", "torque_constant", "0.2", "N·m/A of the motor; needed where only the current is recorded"),
+    Fact("drive", "torque_constant", "0.2", "N·m/A of the motor; needed if only the current is recorded"),
     Fact("drive", "rotor_inertia", "2.5e-4", "kg·m² of the motor and the parts that turn with it, motor side"),
     Fact("drive", "torque_hold", '"zoh"', '"zoh": a command held between samples, "linear": a measured torque'),
     Fact("model", "friction", '"stribeck"', "or coulomb_viscous, ...; without a name, identify chooses the model"),
     Fact("model", "gravity", '"free"', '"free": identified; "known": from [link]; "none": the axis is vertical'),
     Fact("link", "mass", "3.0", "kg"),
     Fact("link", "centre_of_mass", "0.25", "m from the joint's axis"),
-    Fact("link", "angle", '"-90deg"', "of the centre of mass above the horizontal at position 0; rad, or deg as text"),
+    Fact("link", "angle", '"-90deg"', "centre of mass above the horizontal at position 0; rad, or deg as text"),
     Fact("link", "inertia", "0.25", "kg·m² about the joint's axis; without it, the link is a point mass"),
-    Fact("limits", "position", '["-60deg", "60deg"]', "lowest and highest; rad, or deg as text"),
+    Fact("limits", "position", '["-60deg", "60deg"]', "lowest and highest position; rad, or deg as text"),
     Fact("limits", "velocity", "3.0", "rad/s, largest"),
     Fact("limits", "torque", "100.0", "N·m at the output, largest"),
     Fact("limits", "current", "5.0", "A in the motor, largest"),
@@ -75,12 +75,14 @@ def new_joint_text(joint: Joint, notes: Sequence[str] = ()) -> str:
     <BLANKLINE>
     [drive]
     gear_ratio = 50.0  # motor angle per joint angle, negative if they turn in opposite directions
-    # torque_constant = 0.2  # N·m/A of the motor; needed where only the current is recorded
+    # torque_constant = 0.2  # N·m/A of the motor; needed if only the current is recorded
     ...
     """
     if joint.parameters or joint.tolerances.given:
         raise InputError(
-            "a new file cannot hold parameters and tolerances", argument="joint", remedy="save it"
+            "a new file cannot hold parameters and tolerances",
+            argument="joint",
+            remedy="save the joint",
         )
     document = joint_document(joint)
     if joint.gear_ratio == 1.0:

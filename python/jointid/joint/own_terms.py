@@ -195,7 +195,7 @@ def is_fixed(name: str) -> bool:
 def _of_signal(signal: object, kinds: object) -> list[OwnTerm]:
     if not isinstance(signal, str) or not re.fullmatch(_NAME, signal):
         raise InputError(
-            "the name of an extra signal is expected, of letters, digits and underscores",
+            "the name of an extra signal is expected, with letters, digits and underscores only",
             argument="terms",
             value=signal,
         )
@@ -230,13 +230,13 @@ def _own_term(signal: str, text: str) -> OwnTerm:
             centre = float("nan")
         if kind not in CENTRED or not abs(centre) < 1e6:
             raise InputError(
-                f"only {' and '.join(CENTRED)} have a centre (an angle in rad)",
+                f"only the kinds {' and '.join(CENTRED)} have a centre (an angle in rad)",
                 argument=place,
                 value=text,
             )
     if signal == POSITION and (kind not in CENTRED or rate):
         raise InputError(
-            f"for the joint's own position, only {' and '.join(CENTRED)} can be identified",
+            f"for the joint's own position, only the kinds {' and '.join(CENTRED)} can be identified",
             argument=place,
             value=text,
             remedy="load another signal with `extra`",

@@ -34,13 +34,13 @@ class Parameter:
     min, max : float, optional
         Bounds of the search, both included. Default: computed from the recording.
     vary : bool
-        False fixes the parameter at its value. Default True.
+        Whether the parameter is identified; False fixes it at its value. Default True.
 
     Raises
     ------
     InputError
-        The name is unknown, a number is not finite, min exceeds max, the value is outside the bounds, a
-        fixed parameter has no value, or a Stribeck velocity or exponent is not above 0.
+        The name is unknown, a number is not finite, min exceeds max, or the value is outside the bounds. A fixed
+        parameter has no value, or a Stribeck velocity or exponent is not above 0.
 
     Examples
     --------
@@ -86,7 +86,7 @@ class Parameter:
                 )
         if not self.vary and self.value is None:
             raise InputError(
-                "there is no value to fix the parameter at",
+                "a fixed parameter needs a value",
                 argument="vary",
                 value=False,
                 place=owner,

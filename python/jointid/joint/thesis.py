@@ -9,7 +9,7 @@ from jointid.joint.parameters import Parameter
 def thesis_joint() -> Joint:
     """Return the joint of the thesis: a strain-wave drive with a built-in torque sensor.
 
-    It has the drive's data and the search bounds, but no friction or sensor values.
+    The joint contains the drive's data and the search bounds, but no values for friction or sensor.
 
     Examples
     --------

@@ -32,7 +32,7 @@ class PositionLoop:
     Parameters
     ----------
     gain : float
-        Duty per position error [1/rad]; with a recorded signal "gain", also per unit of that signal.
+        Duty per position error [1/rad]; if a signal "gain" is recorded, also per unit of this signal.
     saturation : float
         Largest magnitude of the duty. Default 1.
     delay : float
@@ -68,13 +68,13 @@ class VoltageDrive:
     Parameters
     ----------
     resistance : float, optional
-        Resistance of the winding [Ω]. Default: identified, if a recording has stretches without drive.
+        Resistance of the winding [Ω]. Default: identified, if the motor turns freely in parts of a recording.
     supply : float, optional
         Supply voltage [V]. Default: the recording's signal "supply".
     duty_scale : float
         Duty per unit of the logged signal "duty", e.g. 1/885. Default 1.
     position_loop : PositionLoop or mapping, optional
-        Computes the duty if none is logged, and closes the loop in a rollout. Default: not known.
+        Position loop, which computes an unlogged duty and closes the loop in a rollout. Default: not known.
     signals : mapping of str to str
         Headers of the extra signals "duty", "supply", "driven" (0 while the motor turns freely) and "gain". Default:
         none; the command line then uses columns with these names.

@@ -66,7 +66,7 @@ def identify_joints(
     InputError
         A joint does not exist, an option is invalid, or gear ratios contradict each other.
     KeyboardInterrupt
-        Ctrl-C; it is raised within 0.1 s.
+        After Ctrl-C, within 0.1 s.
 
     Examples
     --------
@@ -109,7 +109,7 @@ def _of_each(error: InputError, joints: int) -> InputError:
         Action(
             "call",
             each.arguments,
-            "; ".join(filter(None, (each.text, "one value for each joint, comma-separated"))),
+            "; ".join(filter(None, (each.text, "one value for each joint, separated by commas"))),
             each.function,
         )
         if isinstance(each, Action) and joints > 1 and set() < each.arguments.keys() <= _OF_EACH
@@ -132,7 +132,7 @@ def _with_drive(error: InputError, recording: Recording) -> InputError:
     whole = Action(
         "call",
         {"robot": ...},
-        "with a drive in the robot's facts, because wanted positions are recorded",
+        "with a position drive in the robot's facts, because wanted positions are recorded",
         "identify_robot",
     )
     return InputError(
@@ -184,7 +184,9 @@ def _known(joint: Joint | Mapping[str, Joint] | None, name: str) -> Joint | None
         return joint
     if not isinstance(joint, Mapping):
         raise InputError(
-            "a Joint, or one for each joint's name, is expected", argument="joint", value=joint
+            "a Joint, or a mapping from joint names to Joints, is expected",
+            argument="joint",
+            value=joint,
         )
     for key in (name, int(name) if name.isdigit() else name):
         if key in joint:

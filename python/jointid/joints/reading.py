@@ -42,7 +42,8 @@ def load_estimate(path: Path, joint: str | None = None) -> Estimate:
         if len(joints) != 1:
             first = next(iter(joints), "1")
             raise InputError(
-                f"the file holds the estimates of {len(joints)} joints ({', '.join(joints)}), and one is expected",
+                f"the file holds the estimates of {len(joints)} joints ({', '.join(joints)}), but one joint is "
+                "expected",
                 place=str(path),
                 remedy=Action("call", {"joint": first}, "or another joint", "load"),
             )

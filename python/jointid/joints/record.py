@@ -63,9 +63,9 @@ def _sentence(name: str, share: Share) -> str:
     alike = ""
     if share.alike:
         others = " and ".join(joint_phrase(each) for each in share.alike)
-        alike = f"; {others} would explain as much, because these joints move alike"
+        alike = f"; {others} would explain the same share, because these joints move alike"
     if share.own_too:
-        alike += f"; {joint_phrase(name)}'s own motion explains nearly as much"
+        alike += f"; {joint_phrase(name)}'s own motion explains nearly the same share"
     verb = "explains" if share.certain else "perhaps explains"
     percent = max(1, round(100.0 * share.share))
     return (

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 
 class JointEstimates(JointEstimatesRecord, KeptResult):
-    """Several joints identified from one recording, each alone; a mapping from names to estimates.
+    """Estimates of several joints from one recording, each joint identified alone; a mapping from names to estimates.
 
-    A joint that failed is not in the mapping. `results` contains it with the reason.
+    A joint with a failed identification is not in the mapping. `results` contains the joint with the reason.
 
     Attributes
     ----------
@@ -49,7 +49,8 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
         Parameters
         ----------
         verbose : bool
-            Whether to return everything: the table, the couplings, and each joint's findings. Default False.
+            Whether to return the complete report: the table, the couplings, and each joint's findings. Default
+            False.
         """
         from jointid.joints.answers import answer
         from jointid.joints.tables import text_report
@@ -65,12 +66,12 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
     document = to_dict
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimates from a JSON text. Methods that need the recordings raise an error.
+        """Return the estimates from a JSON text. Their methods that need the recordings raise an error.
 
         Parameters
         ----------
@@ -88,12 +89,13 @@ class JointEstimates(JointEstimatesRecord, KeptResult):
         return read_joints(require_text(text), cls)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the parameters and derived quantities of all joints as a data frame, one row each.
+        """Return the parameters and derived quantities of all joints as a data frame, one row per quantity.
 
         Returns
         -------
         DataFrame
-            Indexed by joint and name, with the columns of `Estimate.to_pandas`. A joint that failed has no row.
+            Data frame indexed by joint and name, with the columns of `Estimate.to_pandas`. A joint with a failed
+            identification has no row.
 
         Raises
         ------

@@ -20,11 +20,11 @@ SPEED, RELATIVE, MOMENTUM = "speed", "relative speed", "acceleration"
 POSITION, POSE, TORQUE = "position", "pose", "torque"
 MEANING = {
     SPEED: "friction of a coupled drive",
-    RELATIVE: "friction between the two",
+    RELATIVE: "friction between the two joints",
     MOMENTUM: "coupled inertia",
     POSITION: "gravity",
-    POSE: "inertia that changes with its position",
-    TORQUE: "torque that acts there",
+    POSE: "inertia that changes with the other joint's position",
+    TORQUE: "torque of the other joint that acts on this joint",
 }
 
 

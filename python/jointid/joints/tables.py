@@ -16,7 +16,7 @@ from jointid.estimate.wording import rounded, two_digits
 from jointid.joints.record import JointEstimatesRecord, JointResult
 
 _NOTHING = 1e-9  # of a free value without an error: remainder at a bound of zero
-_NO_COUPLING = "no joint's residual is explained by the others beyond chance"
+_NO_COUPLING = "no joint explains another joint's residual by more than chance"
 
 
 def shown_parameters(result: JointEstimatesRecord) -> list[str]:

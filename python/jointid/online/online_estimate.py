@@ -19,18 +19,17 @@ _PLAIN = (
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class OnlineEstimate(Result):
-    """An estimate from the last seconds of a continuing motion.
+    """Estimate from the last seconds of a continuing motion.
 
-    Its intervals contain random errors only. `identify` on a recording also checks the signals, and
-    includes the effect of the choice of windows.
+    The intervals contain random errors only. `identify` with a recording also checks the signals. Its intervals
+    include the effect of the choice of windows.
 
     Attributes
     ----------
     parameters : mapping of str to ParameterEstimate
-        Parameters by name, fixed ones included.
+        Parameters by name, including fixed parameters.
     undetermined : tuple of str
-        Free parameters with a standard error above 5 % of the value: the last seconds do not determine
-        them.
+        Free parameters that the last seconds do not determine: standard error above 5 % of the value.
     at_bound : tuple of str
         Parameters that ended on a bound.
     begin, end : float
@@ -38,7 +37,7 @@ class OnlineEstimate(Result):
     windows : int
         Number of integration windows with motion.
     penalty : float
-        Sum of squared window residuals, summed directly.
+        Sum of squared window residuals, computed directly from the residuals.
     joint : Joint
         Joint with the estimated values, ready for a controller.
     update : int
@@ -46,7 +45,7 @@ class OnlineEstimate(Result):
     seconds : float
         Computing time of this update [s].
     dropped : int
-        Number of samples left out so far, because they arrived faster than they could be processed.
+        Number of samples left out so far, because they arrived too fast.
 
     Examples
     --------
@@ -94,7 +93,7 @@ class OnlineEstimate(Result):
         )
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything except the joint in JSON's types; a number that is not finite becomes a text."""
+        """Return all attributes except the joint in JSON's types; a number that is not finite becomes a text."""
         return dict(
             json_types(
                 {

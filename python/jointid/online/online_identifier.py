@@ -32,36 +32,36 @@ _OPTIONAL = ("velocity", "sensor", "motor_torque", "current")
 class OnlineIdentifier:
     """Identify a joint while it runs, from the last seconds of its motion.
 
-    `feed` takes samples and returns at once. A thread of the identifier processes them piece by piece,
-    removes samples older than `window`, and computes a new estimate. Time and memory are bounded: an update
-    takes a few milliseconds at any sampling rate, and no sample older than the window is kept. Windows of
-    integration and bounds are chosen as in `identify`. They are checked while the window fills, and then
-    once per window. A window of integration has at least five samples. Below about 50 samples per second,
-    the default window of 30 s has few windows of integration, and the estimate is less accurate near reversals.
-    The gain is found by regression: `residual` is "sensor" (default with a sensor) or "torque".
+    `feed` accepts samples and returns at once. A thread processes the samples piece by piece, and removes samples
+    older than `window`. After each piece, the thread computes a new estimate. An update takes a few milliseconds at
+    any sampling rate. Integration windows and bounds are chosen as in `identify`. They are checked while the first
+    `window` fills, and then once per `window`. An integration window has at least five samples. Below about 50
+    samples per second, the default `window` of 30 s contains few integration windows. The estimate is then less
+    accurate near reversals. The sensor gain is identified by regression: `residual` is "sensor" (default with a
+    sensor) or "torque".
 
-    `close`, or the end of a `with` block, ends the thread. Deleting the identifier also ends it, unless the
+    `close`, or the end of a `with` block, ends the thread. Deleting the identifier also ends the thread, unless the
     callback refers to the identifier.
 
     Parameters
     ----------
     joint : Joint, optional
-        Known values, bounds and the model, as for `identify`. Other bounds are computed from the first
-        seconds, and again if a parameter reaches one of them.
+        Joint with known values, bounds and model, as for `identify`. Unknown bounds are computed from the first
+        seconds. They are computed again if a parameter reaches such a bound.
     window : float
         Duration of the samples that an estimate uses [s]. Default 30.
     update : float
-        Time between estimates, and duration of a piece [s]; rounded up to a whole number of integration
-        windows. Default 0.5.
+        Time between estimates, and duration of a piece of samples [s]. It is rounded up to a whole number of
+        integration windows. Default 0.5.
     **options
     callback : callable, optional
-        Function that gets each `OnlineEstimate`, called on the identifier's thread. The next call, or the end
-        of the `with` block, raises the callback's exceptions.
+        Function that the identifier's thread calls with each `OnlineEstimate`. The next call, or the end of the
+        `with` block, raises the callback's exceptions.
 
     Raises
     ------
     InputError
-        Settings are invalid (raised at once), or samples are invalid (raised in the next call).
+        Settings are invalid (raised at once), or samples are invalid (raised by the next call).
 
     Examples
     --------
@@ -110,7 +110,7 @@ class OnlineIdentifier:
         torque: ArrayLike | None = None,
         **others: ArrayLike | None,
     ) -> None:
-        """Add one or several samples. Any thread may call this; each call is processed as a whole.
+        """Add one or several samples. Any thread may call `feed`; the samples of one call stay together.
 
         Parameters
         ----------
@@ -119,13 +119,13 @@ class OnlineIdentifier:
         position, torque : float or array
             Position and torque on the output side [rad, N·m] (or [m, N]).
         **others : float or array
-            Further signals: velocity and sensor. Instead of the torque: motor_torque or current, which a
-            joint with gear_ratio (and torque_constant) converts. Every call needs the same signals.
+            Further signals: velocity and sensor. Instead of the torque: motor_torque (for a joint with gear_ratio),
+            or current (for a joint with gear_ratio and torque_constant). Every call needs the same signals.
 
         Raises
         ------
         InputError
-            These or earlier samples are invalid.
+            Samples of this or an earlier call are invalid.
         """
         for name in others:
             if name not in _OPTIONAL:
@@ -145,7 +145,7 @@ class OnlineIdentifier:
         signals = self._signals or here
         if "position" not in signals:
             raise InputError(
-                "it is missing; the position of the output is needed",
+                "this signal is missing; the position of the output is needed",
                 argument="position",
                 place="samples",
             )
@@ -161,7 +161,7 @@ class OnlineIdentifier:
                 first = int(np.flatnonzero(np.diff(times) <= 0.0)[0])
                 earlier, later = times[first], times[first + 1]
             raise InputError(
-                f"time must increase from sample to sample, and the one before is {earlier} s",
+                f"time must increase from sample to sample, but the previous time is {earlier} s",
                 argument="time",
                 value=float(later),
                 place="samples",
@@ -172,7 +172,7 @@ class OnlineIdentifier:
 
     @property
     def estimate(self) -> OnlineEstimate | None:
-        """Latest estimate, or None before the first one."""
+        """Latest estimate; None before the first estimate."""
         return self._worker.latest()
 
     def wait(self, timeout: float | None = None) -> OnlineEstimate | None:
@@ -188,7 +188,7 @@ class OnlineIdentifier:
         TimeoutError
             The samples were not processed in time.
         InputError
-            The call comes from the callback, which would wait for itself.
+            The callback calls `wait`, and would wait forever.
         """
         return self._worker.wait(timeout)
 

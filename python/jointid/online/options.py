@@ -20,9 +20,7 @@ def checked_duration(name: str, value: Any) -> float:
     except InputError as error:
         value, seconds = error.value, 0.0
     if seconds <= 0.0:
-        raise InputError(
-            "a duration above 0 and finite [s] is expected", argument=name, value=value
-        )
+        raise InputError("a finite duration above 0 s is expected", argument=name, value=value)
     return seconds
 
 
@@ -44,16 +42,16 @@ class _OwnOptions(TypedDict, total=False):
         Model | ModelName | Mapping[str, Any] | None,
         Option(
             kind="Model, str or mapping, optional",
-            help="Same as for `identify`, with at most one shape parameter and no automatic choice. Default: the "
-            'joint\'s model, or "coulomb_viscous".',
+            help="Friction model as for `identify`, with at most one shape parameter and no automatic choice. "
+            'Default: the joint\'s model, or "coulomb_viscous".',
         ),
     ]
     windows: Annotated[
         float | None,
         Option(
             kind="float, optional",
-            help="Duration of an integration window [s]; `window` must hold more than two of them per parameter. "
-            "Default: from the noise of the samples.",
+            help="Duration of an integration window [s]; `window` must hold more than two integration windows per "
+            "parameter. Default: chosen from the noise of the samples.",
             checked=_windows,
         ),
     ]

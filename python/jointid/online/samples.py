@@ -71,13 +71,13 @@ def checked(given: Mapping[str, ArrayLike | None], signals: tuple[str, ...]) -> 
     for name in signals:
         if name not in here:
             raise InputError(
-                f"it is missing; every sample needs {', '.join(signals)}",
+                f"this signal is missing; every sample needs {', '.join(signals)}",
                 argument=name,
                 place="samples",
             )
     for name in sorted(here - set(signals)):
         raise InputError(
-            f"the first samples did not have it; they had {', '.join(signals)}",
+            f"the first samples did not have this signal; their signals were {', '.join(signals)}",
             argument=name,
             place="samples",
         )

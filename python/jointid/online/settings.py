@@ -51,13 +51,13 @@ class OnlineSettings:
             checked_duration(name, getattr(self, name))
         if self.window < 4.0 * self.update:
             raise InputError(
-                f"at least four times `update` is expected, here {4.0 * self.update:g} s",
+                f"at least four times `update` ({4.0 * self.update:g} s) is expected",
                 argument="window",
                 value=self.window,
             )
         if self.posed.residual == "instruments":
             raise InputError(
-                "instruments need the whole recording; on line the gain is found by regression",
+                "instrumental variables need the whole recording; online, a regression identifies the gain",
                 argument="residual",
                 value="instruments",
                 remedy=Action("call", {"residual": "sensor"}),
@@ -99,14 +99,17 @@ class OnlineSettings:
                 f"{joint.owner} has a torque sensor, but the samples have no signal sensor",
                 argument="sensor",
                 place="samples",
-                remedy=("give its reading", Action("call", {"sensor": False}, function="Joint")),
+                remedy=(
+                    "give the sensor's reading",
+                    Action("call", {"sensor": False}, function="Joint"),
+                ),
             )
         if not {"torque", "motor_torque", "current"} & set(signals):
             raise InputError(
-                "it is missing",
+                "this signal is missing",
                 argument="torque",
                 place="samples",
-                remedy="give the torque at the output; or motor_torque or current, and a joint that converts it",
+                remedy="give the torque at the output, or motor_torque or current with a joint that converts them",
             )
         recording = _example(signals, joint.kind if joint is not None else "revolute")
         output_torque(recording, joint)
@@ -115,8 +118,8 @@ class OnlineSettings:
         parameter_bounds(names, joint, self.posed.parameters)
         if self.windows is not None and self.window <= 2 * len(names) * self.windows:
             raise InputError(
-                f"{len(names)} parameters need more than {2 * len(names)} windows of integration within "
-                f"`window`, here {self.window:g} s",
+                f"{len(names)} parameters need more than {2 * len(names)} integration windows within "
+                f"`window` ({self.window:g} s)",
                 argument="windows",
                 value=self.windows,
                 remedy="give a shorter duration, or a longer window",
@@ -128,37 +131,37 @@ class OnlineSettings:
         chosen = (model if self.joint is None else self.joint.model).resolved
         if (model if self.joint is None else self.joint.model).name == AUTO:
             raise InputError(
-                "only recorded motion can be held out to choose a model",
+                "auto needs held-out recorded motion, so the model cannot be chosen online",
                 argument="model",
                 value=AUTO,
                 remedy="name the model, e.g. stribeck",
             )
         if chosen.name == "stribeck_general":
             raise InputError(
-                "its two shape parameters take too long to search while samples arrive",
+                "online, the search for the two shape parameters of this model takes too long",
                 argument="model",
                 value=chosen.name,
                 remedy="use the model stribeck",
             )
         if chosen.load_friction:
             raise InputError(
-                "it acts on the sum of all other terms; its search takes too long while samples arrive",
+                "load friction acts on the sum of all other terms; online, the search for load friction takes too long",
                 argument="load_friction",
                 value=chosen.load_friction,
                 remedy="leave it out",
             )
         if chosen.terms:
             raise InputError(
-                "samples that arrive on line have no extra signals",
+                "samples that arrive online have no extra signals",
                 argument="terms",
                 value=str(chosen.terms),
                 remedy=Action(
-                    "call", {"terms": {}}, text="identify on a recording uses extra signals"
+                    "call", {"terms": {}}, text="only identify on a recording uses extra signals"
                 ),
             )
         if model.per_recording:
             raise InputError(
-                "there is only one recording on line",
+                "online, there is only one recording",
                 argument="per_recording",
                 value=list(model.per_recording),
             )

@@ -68,7 +68,7 @@ class Worker:
         """Wait until all samples are processed, and return the latest estimate."""
         if self.thread is threading.current_thread():
             raise InputError(
-                "the callback cannot wait for the thread that it runs on", place="wait"
+                "the callback runs on this thread, so it cannot wait for this thread", place="wait"
             )
         with self._condition:
             done = self._condition.wait_for(

@@ -25,7 +25,7 @@ def held_out(comparison: Comparison) -> Picture:
     """Return the relative residual of each model on held-out motion."""
     rows = [_row(row.model, row, row.model == comparison.winner) for row in comparison.rows]
     caption = (
-        f"Relative residual of motion that the model was not fitted to: smaller is better. {_PARTS}"
+        f"Relative residual on motion that was not used for the fit: smaller is better. {_PARTS}"
     )
     return _picture(rows, caption, "model", "mean of the chosen model")
 
@@ -34,7 +34,7 @@ def held_out_robot(comparison: RobotComparison) -> Picture:
     """Return the relative residual of each candidate on held-out torque, as a mean over the robot's joints."""
     rows = [_row(row.name, row, row == comparison.winner) for row in comparison.rows]
     caption = (
-        "Relative residual of torque that the candidate was not fitted to, mean over joints: smaller is better. "
+        "Relative residual on torque that was not used for the fit, mean over joints: smaller is better. "
         f"{_PARTS}"
     )
     return _picture(rows, caption, "candidate", "mean of the chosen model")

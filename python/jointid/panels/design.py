@@ -82,7 +82,8 @@ def motion(design: DesignedMotion) -> Picture:
         ),
     )
     return Picture(
-        caption="Position and velocity of the reference, with their limits. Shaded: range that joints reach.",
+        caption="Position and velocity of the reference, with their limits. Shaded: range of the "
+        "simulated joints.",
         panels=panels,
     )
 

@@ -121,7 +121,7 @@ def residual_over_position(estimate: Estimate, recordings: Sequence[Recording]) 
         ),
     )
     return Picture(
-        caption="Residual over position. If it follows a curve, the model lacks gravity, gear ripple or a varying "
-        "inertia.",
+        caption="Residual over position. If the residual follows a curve, the model lacks gravity, gear ripple or a "
+        "varying inertia.",
         panels=(panel,),
     )

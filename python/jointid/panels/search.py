@@ -33,6 +33,6 @@ def convergence(estimate: Estimate) -> Picture:
         ),
     )
     return Picture(
-        caption="The genetic search, generation by generation; dashed: the penalty after the local polish.",
+        caption="Penalty in each generation of the genetic search; dashed: the penalty after the local polish.",
         panels=(panel,),
     )

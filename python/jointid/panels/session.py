@@ -50,7 +50,7 @@ def tracking(result: Commissioning) -> Picture:
     ends = result.runs[:1] if len(result.runs) == 1 else (result.runs[0], result.runs[-1])
     others = (*result.runs[1:-1], *last)
     panels = [tracking_panel(_of_runs(ends), slides)]
-    caption = "Position minus reference over time, by the encoder"
+    caption = "Encoder position minus reference over time"
     if others:
         panels.append(tracking_panel(_of_runs(others), slides, LOOKS[2:], height=110))
         caption += "; below: the other runs, on their own scale"

@@ -69,6 +69,6 @@ def residuals_over_velocity(estimate: Estimate) -> Picture:
         ),
     )
     return Picture(
-        caption="Residual over velocity. If it follows a curve, friction has another form.",
+        caption="Residual over velocity. If the residual follows a curve, friction has another form.",
         panels=(panel,),
     )

@@ -30,7 +30,7 @@ _STYLE: dict[str, Any] = {
 def style() -> Iterator[None]:
     """Apply the Matplotlib settings of jointid's plots within a `with` block.
 
-    Settings that the user has changed, by a style sheet or in `rcParams`, are kept.
+    Settings from the user's style sheet or `rcParams` are kept.
 
     Examples
     --------
@@ -114,9 +114,9 @@ def line_style(number: int, count: int = 0) -> dict[str, Any]:
     Parameters
     ----------
     number : int
-        Number of the curve, from 0; styles repeat after six.
+        Number of the curve, starting at 0. Styles repeat after six curves.
     count : int
-        Number of samples of the curve. About twelve of them get a marker. Default 0: no markers.
+        Number of samples of the curve. About twelve samples have a marker. Default 0: no markers.
 
     Returns
     -------

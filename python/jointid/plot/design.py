@@ -33,9 +33,9 @@ def designed_motion(
     Returns
     -------
     tuple of Axes
-        Position [rad] or [m] and velocity [rad/s] or [m/s] over time [s], each with its limits and the
-        joints' range. Then the share of the time [%] over velocity, with the nominal joint's friction [N·m]
-        or [N] on the right axis.
+        First two axes: position [rad] or [m] and velocity [rad/s] or [m/s] over time [s], with their limits and the
+        range over all drawn joints. Third axes: share of the time [%] over velocity, with the nominal joint's
+        friction [N·m] or [N] on the right.
 
     Raises
     ------

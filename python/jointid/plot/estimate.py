@@ -25,7 +25,7 @@ def friction_map(
     Parameters
     ----------
     recording : Recording or None
-        Recording of the points. None: the windows that the estimate was fitted to.
+        Recording from which the points are computed. None: the windows of the estimate's fit.
     estimate : Estimate
     ax : Axes, optional
         Axes to draw into. Default: new axes.
@@ -35,7 +35,7 @@ def friction_map(
     Returns
     -------
     Axes
-        Velocity [rad/s] or [m/s], friction [N·m] or [N].
+        Axes with velocity [rad/s] or [m/s] and friction [N·m] or [N].
 
     Raises
     ------
@@ -68,7 +68,7 @@ def window_means(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Ax
     Returns
     -------
     Axes
-        Time [s]; the sensor's reading, or torque [N·m] or force [N].
+        Axes with time [s] and sensor's reading, torque [N·m] or force [N].
 
     Raises
     ------
@@ -94,7 +94,7 @@ def residuals(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
     Returns
     -------
     Axes
-        Time [s]; the sensor's reading, or torque [N·m] or force [N].
+        Axes with time [s] and sensor's reading, torque [N·m] or force [N].
 
     Raises
     ------
@@ -107,12 +107,12 @@ def residuals(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
 
 
 def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axes:
-    """Draw the penalty over generations: best so far, population mean, and the final result.
+    """Draw the penalty over generations: best value so far, mean of the population, and final result.
 
     Parameters
     ----------
     estimate : Estimate
-        Result of a genetic search.
+        Estimate from a genetic search.
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     **style
@@ -121,17 +121,17 @@ def convergence(estimate: Estimate, ax: Axes | None = None, **style: Any) -> Axe
     Returns
     -------
     Axes
-        Generation; penalty [(N·m·s)²], [(N·s)²] or [(sensor units·s)²], logarithmic.
+        Axes with generation and penalty [(N·m·s)²], [(N·s)²] or [(sensor units·s)²], logarithmic.
 
     Raises
     ------
     InputError
-        The estimate was made without a genetic search.
+        The identification used no genetic search.
     """
     require_kind("estimate", estimate, Estimate)
     if estimate.convergence is None:
         raise InputError(
-            "it was made without a genetic search, so there is no convergence to draw",
+            "this estimate was made without a genetic search, so it has no convergence to draw",
             argument="estimate",
         )
     (panel,) = search.convergence(estimate).panels

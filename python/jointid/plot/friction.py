@@ -48,7 +48,7 @@ def friction_curves(
     Returns
     -------
     Axes
-        Velocity [rad/s] or [m/s], friction [N·m] or [N].
+        Axes with velocity [rad/s] or [m/s] and friction [N·m] or [N].
 
     Raises
     ------
@@ -91,11 +91,12 @@ def sensitivity(
     reading: float = 5.0,
     **style: Any,
 ) -> Axes:
-    """Draw the torque at constant speed and constant sensor reading, and its change with a parameter's error.
+    """Draw the torque over constant speed, at a constant sensor reading, for three values of a parameter.
 
-    The torque is the drive's torque in (4-20) without acceleration: friction + gain · reading + offset. A
-    recording contains information about the parameter at speeds where the three curves differ. The plot shows
-    forward motion. In backward motion, friction changes its sign.
+    The torque is the drive's torque in equation (4-20) without acceleration: friction + gain · reading + offset.
+    The values are the parameter's own, a larger and a smaller value. A recording contains information about the
+    parameter at speeds where the three curves differ. The plot shows forward motion. In backward motion, friction
+    changes its sign.
 
     Parameters
     ----------
@@ -106,7 +107,7 @@ def sensitivity(
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     share : float
-        Relative change of the parameter. Default 0.1.
+        Relative increase and decrease of the parameter. Default 0.1.
     peak : float
         Largest speed [rad/s] or [m/s]. Default 0.6.
     reading : float
@@ -117,7 +118,7 @@ def sensitivity(
     Returns
     -------
     Axes
-        Velocity [rad/s] or [m/s], torque [N·m] or force [N].
+        Axes with velocity [rad/s] or [m/s] and torque [N·m] or force [N].
 
     Raises
     ------
@@ -132,7 +133,7 @@ def sensitivity(
     values = known_values(joint)
     if parameter not in values:
         raise InputError(
-            f"it has no value; parameters with a value are {', '.join(values) or 'none'}",
+            f"this parameter has no value; parameters with a value are {', '.join(values) or 'none'}",
             argument="parameter",
             value=parameter,
         )
@@ -173,8 +174,8 @@ def torque_over_velocity(
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     sensed_by : Joint or Estimate, optional
-        The sensor gain and offset that convert the sensor's reading to the link's torque, which is
-        subtracted. Default: nothing is subtracted.
+        Joint or estimate with sensor gain and offset, which convert the reading to the link's torque. The link's
+        torque is subtracted. Default: nothing is subtracted.
     curve : Joint or Estimate, optional
         Joint or estimate with the friction to draw over the samples. Default: no curve.
     **style
@@ -183,7 +184,7 @@ def torque_over_velocity(
     Returns
     -------
     Axes
-        Velocity [rad/s] or [m/s], torque [N·m] or force [N].
+        Axes with velocity [rad/s] or [m/s] and torque [N·m] or force [N].
 
     Raises
     ------
@@ -199,7 +200,7 @@ def torque_over_velocity(
     if sensed_by is not None:
         known = known_values(_joint(sensed_by))
         if recording.sensor is None:
-            raise InputError("it has no sensor that could be subtracted", argument="recording")
+            raise InputError("the recording has no torque sensor to subtract", argument="recording")
         if not set(_SENSOR) <= set(known):
             raise InputError(
                 f"values of {' and '.join(_SENSOR)} are expected", argument="sensed_by"

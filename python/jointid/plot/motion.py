@@ -36,19 +36,19 @@ def tracking_error(
     Parameters
     ----------
     runs : Recording or mapping of str to Recording
-        One run, or several by name, e.g. ``{"before": a, "after": b}``. A simulated run is drawn with
-        its true position, not the encoder's.
+        One run, or several by name, e.g. ``{"before": a, "after": b}``. For a simulated run, the true position is
+        drawn instead of the encoder's position.
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     settling : float, optional
-        Time at the start that the RMS excludes [s]. Default: a sixth of each run.
+        Time at the start of each run that the RMS excludes [s]. Default: a sixth of each run.
     **style
         Keywords of Matplotlib's `Axes.plot` for the curves, e.g. ``color="black"``.
 
     Returns
     -------
     Axes
-        Time from the start of each run [s], tracking error [mrad] or [mm].
+        Axes with time from the start of each run [s] and tracking error [mrad] or [mm].
 
     Raises
     ------
@@ -77,7 +77,7 @@ def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
     runs : Recording or mapping of str to Recording
         One run, or several by name.
     name : str
-        "position", "velocity", "torque", "motor_torque", "current", "sensor" or "reference".
+        Signal: "position", "velocity", "torque", "motor_torque", "current", "sensor" or "reference".
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     **style
@@ -86,12 +86,12 @@ def signal(runs: Runs, name: str, ax: Axes | None = None, **style: Any) -> Axes:
     Returns
     -------
     Axes
-        Time [s]; the signal in SI units, or the sensor's raw reading.
+        Axes with time [s] and the signal in SI units, or the sensor's raw reading.
 
     Raises
     ------
     InputError
-        There is no run, the signal is unknown, or a run lacks it.
+        There is no run, the signal is unknown, or a run does not have the signal.
     """
     if name not in _SIGNALS:
         raise InputError(f"{alternatives(_SIGNALS)} is expected", argument="name", value=name)
@@ -132,12 +132,12 @@ def trajectory(
     Returns
     -------
     Axes
-        Time [s]; position [rad], velocity [rad/s] or acceleration [rad/s²].
+        Axes with time [s] and position [rad], velocity [rad/s] or acceleration [rad/s²].
 
     Raises
     ------
     InputError
-        `what` has another value.
+        `what` has an unknown value.
     """
     if what not in _DERIVATIVES:
         expected = alternatives(tuple(_DERIVATIVES))
@@ -180,7 +180,7 @@ def _named(runs: Runs) -> Mapping[str, Recording]:
         require_kind("runs", run, Recording)
     if not named:
         raise InputError(
-            "there is no recording to draw; give one, or several by name",
+            "there is no recording to draw; give one recording, or several by name",
             argument="runs",
             value=runs,
         )

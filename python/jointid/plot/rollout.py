@@ -33,7 +33,7 @@ def rolled_out(
     Returns
     -------
     Axes
-        Time [s], position [deg].
+        Axes with time [s] and position [deg].
 
     Raises
     ------
@@ -59,4 +59,6 @@ def _run(result: Rollout, run: str | int) -> RunRollout:
         return result.runs[names.index(run)]
     if isinstance(run, int) and not isinstance(run, bool) and 0 <= run < len(names):
         return result.runs[run]
-    raise InputError(f"there is no such run; there are {len(names)}", argument="run", value=run)
+    raise InputError(
+        f"there is no such run; the number of runs is {len(names)}", argument="run", value=run
+    )

@@ -28,7 +28,7 @@ def adaptation(
     options : GaOptions
         Options of the search. Constant probabilities give horizontal lines.
     generations : sequence of Generation
-        Generations of a search with these options. Each adds one point to both lines. Default: none.
+        Generations of a search with these options. Each generation adds one point to both lines. Default: none.
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     **style
@@ -37,7 +37,7 @@ def adaptation(
     Returns
     -------
     Axes
-        Diversity measure [–], probability [–], logarithmic.
+        Axes with diversity measure [–] and probability [–], logarithmic.
 
     Raises
     ------

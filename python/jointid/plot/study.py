@@ -35,21 +35,21 @@ def sweep(
 ) -> Axes:
     """Draw a quantity over one swept setting as points and a line, or over two settings as a heat map.
 
-    A report draws a line for each value of the second setting instead.
+    Instead of a heat map, a report draws one line for each value of the second setting.
 
     Parameters
     ----------
     study : Study
     x, y : str, optional
-        Swept settings. Default: the first two. `y` is none if only one is swept or `ax` is set. Trials of the
-        other settings are combined.
+        Swept settings of the horizontal and vertical axis. Default: the first two; `y` is None if only one setting
+        is swept or `ax` is set. Trials of the other settings are combined.
     value : str
-        A column of the study's table (``"penalty"``, a parameter, ``"tracking_after"``, …), or
-        ``"error.NAME"``: a parameter's relative error [%], or ``"error.worst"``: the largest error. Default
-        ``"penalty"``.
+        Drawn quantity: a column of the study's table (``"penalty"``, a parameter, ``"tracking_after"``, …).
+        ``"error.NAME"``: a parameter's relative error [%]. ``"error.worst"``: the largest of these errors [%].
+        Default ``"penalty"``.
     statistic : str
-        Statistic of the trials: "median" (default), "mean", "spread", "best" or "worst". For an error, its
-        magnitude is used.
+        Statistic of the trials: "median" (default), "mean", "spread", "best" or "worst". The statistic of an error
+        uses the error's magnitude.
     ax : Axes, optional
         Axes to draw into. Default: new axes.
     **style
@@ -58,8 +58,8 @@ def sweep(
     Returns
     -------
     Axes
-        Over one setting: the quantity over the setting, or one row per value if the values are not numbers.
-        Over two: the settings on the axes, and the quantity as colour and number.
+        For one setting: the quantity over the setting, with one row per value if the values are not numbers. For
+        two settings: the settings on the axes, and the quantity as colour and number.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def sweep(
     for argument, name in (("x", x), ("y", y)):
         if name is not None and name not in study.swept:
             raise InputError(
-                f"not a swept setting; swept are {', '.join(study.swept)}",
+                f"this setting is not swept; the swept settings are {', '.join(study.swept)}",
                 argument=argument,
                 value=name,
             )

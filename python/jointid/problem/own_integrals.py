@@ -66,7 +66,7 @@ def signal_of(own: OwnTerm, recording: Recording) -> Array:
     if own.signal not in recording.extra:
         present = ", ".join(recording.extra) or "none"
         raise InputError(
-            f"the recording has no extra signal of this name; it has {present}",
+            f"the recording has no extra signal of this name; its extra signals: {present}",
             argument="terms",
             value=own.signal,
             remedy=Action("call", {"extra": {own.signal: ...}}, function="load"),

@@ -29,7 +29,7 @@ _SMALLEST, _LARGEST = 1e-100, 1e100
 
 _FEW = 0.01  # share of samples: fewer are single faults, more are a wrong scale
 
-_RECORDING_EXPECTED = "a Recording is expected, or several; load reads one from a file"
+_RECORDING_EXPECTED = "a Recording is expected, or several; load reads a Recording from a file"
 
 
 def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]:
@@ -73,7 +73,8 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         travel = highest - lowest
         if not run.velocity_derived and run.ranges["velocity"] == (0.0, 0.0) and travel > 0.0:
             raise InputError(
-                f"it is always 0, but the position changes by {travel:.3g}: a driver without this measurement logs 0",
+                f"the velocity is always 0, but the position changes by {travel:.3g}; some drivers log 0 "
+                "without a measurement",
                 argument="velocity",
                 place=place,
                 remedy=Action(
@@ -86,13 +87,13 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         if _comes_in_bursts(run):
             period = float(f"{run.duration / (len(run) - 1):.6g}")
             raise InputError(
-                f"{100 * len(run.gaps) / len(run):.0f} % of its sample intervals are gaps, as when a bus delivers "
-                "samples in bursts",
+                f"{100 * len(run.gaps) / len(run):.0f} % of the sample intervals are gaps, probably because a bus "
+                "delivers the samples in bursts",
                 argument="time",
                 place=place,
                 remedy=(
                     "use the drive's time stamps instead of the host's",
-                    Action("call", {"sample_period": period}, "if none is missing", "load"),
+                    Action("call", {"sample_period": period}, "if no sample is missing", "load"),
                 ),
             )
         if run.kind != runs[0].kind:
@@ -108,7 +109,7 @@ def listed(recordings: Recording | Sequence[Recording]) -> tuple[Recording, ...]
         for earlier in alike:
             if _same(runs[earlier], run):
                 raise InputError(
-                    f"it is the same as recording {earlier}; the identification would count its noise as independent",
+                    f"this recording is the same as recording {earlier}; the same samples must not be counted twice",
                     place=place,
                     remedy="give each recording once",
                 )
@@ -156,15 +157,15 @@ def _check_magnitudes(run: Recording, place: str) -> None:
             index = int(beyond[0])
             rest = float(np.abs(np.delete(values, beyond)).max())
             raise InputError(
-                f"{len(beyond)} sample(s) have this size, the first at {float(run.time[index]):.6g} s, but all "
-                f"others are at most {rest:.3g}: these samples are not measured values",
+                f"{len(beyond)} sample(s) have this size, the first at {float(run.time[index]):.6g} s; all other "
+                f"samples are at most {rest:.3g}, so these are not measured values",
                 argument=name,
                 value=float(values[index]),
                 place=place,
                 remedy="cut such samples out, and check the logger",
             )
         raise InputError(
-            "the largest value of a measured signal cannot have this size",
+            "a measured signal cannot have a value of this size",
             argument=name,
             value=largest,
             place=place,
@@ -224,7 +225,7 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
     ):
         if getattr(recording, signal) is not None:
             raise InputError(
-                f"the recording has {signal}, on the motor side, and no torque at the output",
+                f"the recording has no torque at the output, only {signal} on the motor side",
                 argument="torque",
                 remedy=(*_conversions(recording, signal), needs),
             )
@@ -233,6 +234,6 @@ def output_torque(recording: Recording, joint: Joint | None) -> Array:
         argument="torque",
         remedy=(
             Action("call", {"columns": {"torque": ...}}, function="load"),
-            Action("call", {"columns": {"current": ...}}, "if it is in amperes", "load"),
+            Action("call", {"columns": {"current": ...}}, "if the column is in amperes", "load"),
         ),
     )

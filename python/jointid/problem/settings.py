@@ -65,8 +65,8 @@ class MaskOptions(TypedDict, total=False):
         bool,
         Option(
             kind="bool",
-            help="Whether to leave out the parts in which the joint sticks or stands still: there, friction is "
-            "set-valued and the model does not apply. Default True.",
+            help="Whether to leave out the parts in which the joint sticks or stands still. The model is not "
+            "valid in these parts, because friction at rest has no unique value. Default True.",
             default=True,
             checked=_flag,
         ),
@@ -80,8 +80,8 @@ class SignalOptions(TypedDict, total=False):
         Parameters | None,
         Option(
             kind="mapping, optional",
-            help='Changes by parameter name: a number fixes the parameter; a mapping of "value", "min", "max" or '
-            '"vary", or a `Parameter`, changes these fields. Values are in SI units.',
+            help="Values or bounds by parameter name. A number fixes the parameter. A `Parameter`, or a mapping of "
+            '"value", "min", "max" or "vary", changes these fields. Values are in SI units.',
             checked=_or_none(_mapping),
             flag="--set",
             phrase="fix a parameter (SI)",
@@ -93,22 +93,23 @@ class SignalOptions(TypedDict, total=False):
         Residual | None,
         Option(
             kind="str, optional",
-            help='"instruments" (default with a sensor): the gain follows from the part of the reading that gravity '
-            "and inertia of a rigid link explain; noise of the reading and friction outside the model do not bias it. "
-            '"sensor" (the thesis) compares the reading with the remaining torque; "torque" (default without a sensor) '
-            'compares the torque with the reading. If instruments are weak, the default is "sensor", and `settings` '
-            'states the reason. Online, instruments are refused, and the default is "sensor".',
+            help='"instruments" (default with a sensor): instrumental variables. The gain follows from the part of the '
+            "reading that gravity and inertia of a rigid link explain. Noise of the reading and friction outside the "
+            'model do not bias the gain. "sensor" (the thesis) compares the reading with the torque minus all other '
+            'terms. "torque" (default without a sensor) compares the torque with the sum of all terms. If gravity and '
+            'inertia explain too little of the reading, the default is "sensor", and `settings` states the reason. '
+            'Online, only "sensor" (default) and "torque" are possible.',
             checked=_one_of(RESIDUALS),
             flag="--residual",
-            phrase="residual to minimise: instruments, sensor or torque",
+            phrase="residual to minimise: instruments (instrumental variables), sensor or torque",
         ),
     ]
     torque_hold: Annotated[
         TorqueHold | None,
         Option(
             kind="str, optional",
-            help='"zoh" for a torque command held between samples, "linear" for a measured torque. Default: from the '
-            'recording, then from the joint, then "linear".',
+            help='"zoh" for a torque command held between samples, "linear" for a measured torque. Default: the '
+            'value of the recording, otherwise of the joint, otherwise "linear".',
             checked=_one_of(get_args(TorqueHold)),
             flag="--torque-hold",
             phrase="torque between samples: zoh (held command) or linear (measured)",
@@ -127,9 +128,9 @@ class FitOptions(BalanceOptions, total=False):
         Windows,
         Option(
             kind='int, float, "cumulative" or WindowOptions, optional',
-            help="An int is the approximate number of windows (gaps and several recordings change it); a float is "
-            'their duration [s]; "cumulative" compares the running integral at each sample, like the thesis\'s '
-            "MATLAB program. Default: the shortest windows that the noise of the velocity allows.",
+            help="An int is the approximate number of windows (gaps and several recordings change this number). A "
+            'float is the duration of each window [s]. "cumulative" compares the running integral at each sample, like '
+            "the MATLAB program of the thesis. Default: the shortest windows that the noise of the velocity allows.",
             checked=lambda _, value: checked_windows(value),
             flag="--windows",
             phrase="number of windows, duration (0.05s) or cumulative; default: as short as the noise allows",
@@ -140,14 +141,14 @@ class FitOptions(BalanceOptions, total=False):
         Mapping[str, float] | None,
         Option(
             kind="mapping of str to float, optional",
-            help='Delays of "torque", "sensor" and "velocity" against the position [s], to be removed; positive: '
-            "the signal is late. An empty mapping removes none. Default: all certain delays, except for a torque "
-            "that is early by more than a sample, because a late or coarse position may cause this. The estimate's "
-            "`delays` and its report list them.",
+            help='Delays to remove from "torque", "sensor" and "velocity", relative to the position [s]. Positive: '
+            "the signal is late. An empty mapping removes no delay. Default: all certain delays. A torque that "
+            "leads the position by more than a sample is not shifted: the position may be late or coarse instead. The "
+            "estimate's `delays` and its report list the delays.",
             checked=_or_none(lambda _, value: checked_shift(value)),
             flag="--shift",
-            phrase="delay of torque, sensor or velocity to remove, positive: late; torque=0 removes none (default: "
-            "delays that are certain)",
+            phrase="delay to remove from torque, sensor or velocity (positive if the signal is late, 0 to remove none; "
+            "default: all certain delays)",
             form="numbers by name",
             metavar="SIGNAL=SECONDS",
         ),
@@ -161,10 +162,10 @@ class ModelOptions(TypedDict, total=False):
         Model | ModelName | Mapping[str, Any] | None,
         Option(
             kind="Model, str or mapping, optional",
-            help='Terms of the torque balance, e.g. ``"stribeck:ripple=2"``; each stated field overrides the field of '
+            help='Terms of the torque balance, e.g. ``"stribeck:ripple=2"``. Each stated field overrides the field of '
             "the joint's model. Default: the joint's model. If neither has a name, or the name is \"auto\", held-out "
-            'prediction chooses the model: "coulomb_viscous" or "stribeck", and gravity free or none if it is neither '
-            "stated nor known; `Estimate.selection` has the scores. A sweep makes no choice: it uses "
+            'prediction chooses "coulomb_viscous" or "stribeck". It also chooses free or no gravity, if gravity is '
+            "neither stated nor known. `Estimate.selection` has the scores. A sweep does not choose; it uses "
             '"coulomb_viscous".',
             checked=lambda _, value: Model.of(value),
         ),
@@ -173,12 +174,12 @@ class ModelOptions(TypedDict, total=False):
         Mapping[str, str] | None,
         Option(
             kind="mapping of str to str, optional",
-            help="Own terms: extra signals of the recordings and their kind of term, e.g. "
-            '``{"q6_rate": "viscous+coulomb", "tau_model": "known"}``; same as the field `terms` of the model. '
-            "Default: the model's.",
+            help='Own terms: extra signals of the recordings and their kind of term, e.g. ``{"q6_rate": '
+            '"viscous+coulomb", "tau_model": "known"}``. The field `terms` of the model has the same meaning. Default: '
+            "the terms of the model.",
             flag="--term",
-            phrase="own term: a column (or --extra) and its kind: viscous, coulomb, known, scaled, inertia, ...; "
-            "viscous@rate uses the column's derivative; join kinds by +; may be repeated",
+            phrase="own term, may be repeated: a column (or --extra) and its kind, such as viscous, coulomb, known, "
+            "scaled or inertia; viscous@rate uses the column's derivative; + joins two kinds",
             form="texts by name",
             metavar="SIGNAL=KIND",
         ),
@@ -192,13 +193,13 @@ class SpeedOptions(TypedDict, total=False):
         float | None,
         Option(
             kind="float, optional",
-            help="Motion slower than this is left out [rad/s or m/s]; 0 leaves out nothing. Default: "
-            "0, except if slow motion contradicts the friction at faster motion (creep); always 0 for models with "
-            'friction that depends on slow motion, such as "stribeck". See the estimate\'s `slow_motion`.',
+            help="Speed below which motion is left out [rad/s or m/s]. Default: 0 (no motion is left out). If slow "
+            "motion contradicts the friction of faster motion (creep), the default leaves slow motion out. The default "
+            'is always 0 for models with low-speed friction, such as "stribeck". See the estimate\'s `slow_motion`.',
             checked=_or_none(_speed),
             flag="--min-speed",
-            phrase="leave out motion slower than this speed, rad/s or m/s; 0: leave out nothing (default: chosen from "
-            "the data)",
+            phrase="leave out motion below this speed, rad/s or m/s (0: leave out no motion; default: chosen from the "
+            "data)",
             form="number",
         ),
     ]

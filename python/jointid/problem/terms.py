@@ -107,7 +107,7 @@ def choose_terms(
         )
     if residual == "instruments" and model.load_friction:
         raise InputError(
-            "load friction depends on the reading itself, which instruments replace",
+            "instrumental variables replace the reading, but load friction depends on the reading",
             argument="residual",
             value=residual,
             remedy=Action("call", {"residual": "torque"}),
@@ -207,7 +207,10 @@ def _offset(joint: Joint, model: ResolvedModel, sensor: bool) -> tuple[bool, str
         return False, ""
     if joint.torque_offset is None and model.asymmetric and model.gravity != "none":
         # No motion can separate a constant from a difference of Coulomb frictions; it can separate gravity.
-        return False, "torque_offset: all torque that does not reverse counts as gravity"
+        return (
+            False,
+            "torque_offset: gravity includes all torque that is the same in both directions",
+        )
     return joint.torque_offset is not False, ""
 
 
@@ -219,7 +222,7 @@ def _ordered(
     keys: list[str] = []
     rows = _rows()
     for key in sorted(wanted - rows.keys()):
-        raise InputError("the core has no such term", argument="model", value=key)
+        raise InputError("there is no such term", argument="model", value=key)
     for row, family in rows.items():
         if family:
             keys += [f"{row}_{order:g}" for order in orders[row.split("_")[0]]]
@@ -251,7 +254,7 @@ def _check_per_recording(names: tuple[str, ...], terms: tuple[str, ...]) -> None
     for name in names:
         if name not in known:
             raise InputError(
-                f"{name} is not among the terms; known are {', '.join(dict.fromkeys(known.values()))}",
+                f"the model has no term {name}; choose one of {', '.join(dict.fromkeys(known.values()))}",
                 argument="per_recording",
                 value=list(names),
             )

@@ -19,7 +19,7 @@ def check_torque_hold(torque_hold: object) -> None:
     """Raise `InputError` for an unknown interpolation of the torque between samples."""
     if torque_hold not in (None, "zoh", "linear"):
         raise InputError(
-            "zoh (held between samples) or linear is expected, or nothing if it is not known",
+            "zoh (held between samples) or linear is expected; if neither is known, leave torque_hold out",
             argument="torque_hold",
             value=torque_hold,
         )

@@ -14,7 +14,8 @@ _UNIT = r"\s*[\[(][^\[\](),]*[\])]\s*$"
 OF_BLOCKS = Action(
     "call",
     {"columns": {"time": "COLUMN", "position": "FIRST:LAST"}},
-    "several joints: first and last column of each signal, counted from 0, as position=1:6 and torque=7:12",
+    "for several joints: first and last column number of each signal, e.g. position=1:6, torque=7:12; numbers start "
+    "at 0",
     function="load_robot",
 )
 """The call that loads a file with one block of columns per signal."""
@@ -53,7 +54,8 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
         argument, value = f"columns.{signal}", f"{first}:{last}"
         if not first <= last < len(table.headers):
             raise InputError(
-                f"the columns are 0 to {len(table.headers) - 1}; a block is its first and its last one",
+                f"the columns have the numbers 0 to {len(table.headers) - 1}; a block is stated by its first and "
+                "last column",
                 argument=argument,
                 value=value,
                 place=table.header_place,
@@ -61,7 +63,7 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
         if widths[signal] != next(iter(widths.values())):
             shown = ", ".join(f"{name}: {count}" for name, count in widths.items())
             raise InputError(
-                f"blocks have as many columns as there are joints ({shown})",
+                f"all blocks need one column per joint, but their numbers of columns differ ({shown})",
                 argument=argument,
                 value=value,
                 place=table.header_place,
@@ -81,7 +83,7 @@ def with_blocks(table: Table, columns: Columns) -> tuple[Table, Columns]:
         check_signal_name(signal, "columns")
         if signal != "time" and last > first and column is not None and _JOINT not in str(column):
             raise InputError(
-                f"a block of {last - first + 1} columns is expected, as {first}:{last} of {shown}",
+                f"a block of {last - first + 1} columns is expected, because {shown} has the block {first}:{last}",
                 argument=f"columns.{signal}",
                 value=column,
                 place=table.header_place,

@@ -15,7 +15,7 @@ class Changes(Samples):
     """Methods that return a changed copy of a recording; the recording itself is read-only."""
 
     def with_velocity(self, velocity: npt.ArrayLike | None = None) -> Self:
-        """Return the recording with this velocity [rad/s], marked as derived. Default: derive it from the position."""
+        """Return the recording with this velocity [rad/s], marked as derived. Default: derived from the position."""
         return type(self)(
             **{**self._fields(), "velocity": velocity, "velocity_derived": velocity is not None}
         )
@@ -27,7 +27,7 @@ class Changes(Samples):
         extra: Mapping[str, npt.ArrayLike] | None = None,
         **signals: npt.ArrayLike | None,
     ) -> Self:
-        """Return the recording with some signals replaced. All other signals stay, extra ones too.
+        """Return the recording with some signals replaced. All other signals and extra signals are unchanged.
 
         Parameters
         ----------
@@ -36,18 +36,17 @@ class Changes(Samples):
         extra : mapping of str to array_like, each of shape (n,), optional
             Extra signals to add or to replace. Default: none.
         **signals : array_like of shape (n,), or None
-            Signals by the constructor's argument names. None removes an optional signal.
+            New values of signals, by the argument names of `Recording`. None removes an optional signal.
 
         Returns
         -------
         Recording
-            Measured signals only: a simulation's true signals are left out. A new velocity keeps the previous
-            mark "derived" or "recorded".
+            Recording without a simulation's true signals. A new velocity does not change `velocity_derived`.
 
         Raises
         ------
         InputError
-            There is no such signal, or a recording cannot hold the values.
+            There is no such signal, or the values are invalid in a recording.
 
         Examples
         --------

@@ -181,14 +181,14 @@ def check_scale(table: Table, signal: str, factor: object, units: Mapping[str, s
     number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
     if not number or factor == 0 or not math.isfinite(factor):  # type: ignore[arg-type]
         raise InputError(
-            "a finite number other than 0 is expected, the factor from file units to SI",
+            "the factor from file units to SI is expected, a finite number other than 0",
             argument=f"scale.{signal}",
             value=factor,
             place=table.source,
         )
     if signal in units:
         raise InputError(
-            f"{signal} also has the unit {units[signal]!r}; give one of them",
+            f"{signal} also has the unit {units[signal]!r}; give only its scale or only its unit",
             argument=f"scale.{signal}",
             value=factor,
             place=table.source,
@@ -204,7 +204,7 @@ def _candidates(table: Table, columns: Mapping[str, str | int | None]) -> dict[s
         index = column_index(table, column, f"columns.{signal}")
         if index in chosen:
             raise InputError(
-                f"this column is also {chosen[index]}; one column holds one signal",
+                f"this column is also chosen as {chosen[index]}; each signal needs a column of its own",
                 argument=f"columns.{signal}",
                 value=column,
                 place=table.header_place,

@@ -114,7 +114,7 @@ class Contents:
         if self.table.saved is None and (large := too_large(signals)) is not None:
             signal, index = large
             damaged = InputError(
-                "no joint has such a value: the number is damaged, or marks a missing value",
+                "this value is impossible for a joint: the number is damaged, or marks a missing value",
                 argument=signal,
                 value=float(signals[signal][index]),
                 place=place(signal, index),
@@ -217,7 +217,7 @@ class Contents:
             kept &= matches
         if not kept.any():
             raise InputError(
-                "no row has all of these values",
+                "no row has all of these values together",
                 argument="where",
                 value=dict(where),
                 place=self.table.source,

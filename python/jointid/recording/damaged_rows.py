@@ -12,7 +12,7 @@ from jointid.recording.signals import FloatArray
 
 _MOST = 0.1  # share of the rows: if more look damaged, the column's unit or meaning is wrong
 NOTE = "dropped_rows"  # metadata key: number of rows left out
-DROP = Action("call", {"drop_invalid": True}, text="to leave such rows out", function="load")
+DROP = Action("call", {"drop_invalid": True}, text="to leave damaged rows out", function="load")
 
 
 class RepeatedHeaderError(InputError):
@@ -44,8 +44,8 @@ def checked_rows(sound: npt.NDArray[np.bool_], source: str) -> npt.NDArray[np.in
     """Return the numbers of the sound rows, or raise `InputError` if more than a tenth is damaged."""
     if not few(sound):
         raise InputError(
-            f"{np.count_nonzero(~sound)} of {len(sound)} rows have a value that no joint has: they are not single "
-            "damaged rows",
+            f"{np.count_nonzero(~sound)} of {len(sound)} rows have a value that is impossible for a joint; at most "
+            "a tenth of the rows can be left out",
             argument="drop_invalid",
             value=True,
             place=source,

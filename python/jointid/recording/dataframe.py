@@ -72,7 +72,7 @@ class FrameTable:
         index = getattr(getattr(frame, "index", None), "dtype", None)
         if self._index is None and getattr(index, "kind", "") == "f":  # times in an unknown unit
             self.header_place = (
-                "data frame, whose index has no name (rename_axis('time_s') names it)"
+                "data frame; its index has no name (rename_axis('time_s') sets the name)"
             )
         if self._index is not None:
             self.headers = (self._index[0], *self.headers)

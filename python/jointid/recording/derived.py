@@ -103,7 +103,7 @@ def differences(time: FloatArray, position: FloatArray, gaps: Sequence[Gap]) -> 
     if not finite.all():
         index = int(np.argmin(finite))
         raise InputError(
-            f"it changes too fast for a velocity to be derived (at {float(time[index])!r} s)",
+            f"the position changes too fast at {float(time[index])!r} s, so no velocity can be derived",
             argument="position",
             value=float(position[index]),
             place=f"index {index}",

@@ -13,7 +13,7 @@ from jointid.recording.signals import FloatArray
 from jointid.recording.table import Table
 
 EVENLY = Action(
-    "call", {"sample_period": ...}, "if the rows were taken at an even rate", function="load"
+    "call", {"sample_period": ...}, "if the rows have a constant sample period", function="load"
 )
 _HEADER = "time [s]"
 
@@ -51,11 +51,11 @@ def as_stated(
     given = columns if isinstance(columns, Mapping) else {}
     if table.saved is not None or given.get("time") is not None:
         raise InputError(
-            "the file has a time column, too; give only one of the two",
+            "the file has a time column, so no sample period is expected",
             argument="sample_period",
             value=sample_period,
             place=table.source,
-            remedy="leave it out",
+            remedy="leave sample_period out",
         )
     return EvenRows(table, float(sample_period)), {**given, "time": len(table.headers)}  # type: ignore[arg-type]
 
@@ -86,7 +86,7 @@ class EvenRows:
             {
                 "column": header,
                 "signal": "time",
-                "reason": f"a sample period of {sample_period:g} s is given",
+                "reason": f"the call states a sample period of {sample_period:g} s",
             }
             for header in stamps
         ]

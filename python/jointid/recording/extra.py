@@ -68,7 +68,7 @@ def check_extra_name(name: object, argument: str) -> None:
         )
     if name in SIGNALS:
         raise InputError(
-            "this is the name of a fixed signal of recordings",
+            "this name is reserved for a signal of recordings",
             argument=argument,
             value=name,
             remedy=f"call it {name}_extra",
@@ -181,10 +181,10 @@ def named_extra(wanted: object) -> dict[str, str | int]:
     for header in wanted:
         if isinstance(header, str) and not re.fullmatch(_NAME, header):
             raise InputError(
-                "this header cannot be a name; a name has only letters, digits and underscores",
+                "this header cannot be the name of a signal; a name has only letters, digits and underscores",
                 argument="extra",
                 value=header,
-                remedy=f"give the column such a name: extra={{'{_suggested(header)}': {header!r}}}",
+                remedy=f"name the signal: extra={{'{_suggested(header)}': {header!r}}}",
             )
     return {str(header): header for header in wanted}
 

@@ -54,7 +54,7 @@ def without_copies(fields: Mapping[str, Any]) -> dict[str, Any]:
     clear = moved[moved > _ROUNDING * usual]
     if not len(clear) or usual < _FINE * float(clear.min()):
         raise InputError(
-            "the position is so coarse that equal rows may be slow motion",
+            "the resolution of the position is too coarse: equal rows may be slow motion",
             argument="drop_copies",
             value=True,
             remedy="leave it out",

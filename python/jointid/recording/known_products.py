@@ -67,7 +67,10 @@ PRODUCTS: dict[str, Documented] = {
     "iq_measured": Documented("current", "ODrive", (UNITS["A"],), whole=False),
     # CiA 402 (IEC 61800-7-201), objects 6064h, 606Ch, 6077h, 6078h
     "position_actual_value": Documented(
-        "position", _DRIVES, asked="in counts (6064h)", factor="2π over the counts per revolution"
+        "position",
+        _DRIVES,
+        asked="in counts (6064h)",
+        factor="2π divided by the counts per revolution",
     ),
     "velocity_actual_value": Documented(
         "velocity", _DRIVES, asked="in the drive's own unit (606Ch)", factor="the unit in rad/s"
@@ -76,13 +79,13 @@ PRODUCTS: dict[str, Documented] = {
         "torque",
         _DRIVES,
         asked="per mille of the motor's rated torque (6077h, 6076h)",
-        factor="the rated torque in N·m over 1000, times the gear ratio",
+        factor="the rated torque in N·m divided by 1000, times the gear ratio",
     ),
     "current_actual_value": Documented(
         "current",
         _DRIVES,
         asked="per mille of the motor's rated current (6078h, 6075h)",
-        factor="the rated current in A over 1000",
+        factor="the rated current in A divided by 1000",
     ),
     # emanual.robotis.com, control tables of the X series; Feetech's memory tables of STS servos
     "present_position": Documented("position", _SERVOS, (_COUNTS,)),
@@ -91,8 +94,8 @@ PRODUCTS: dict[str, Documented] = {
     "present_current": Documented(
         "current",
         _SERVOS,
-        asked="in a unit of the model",
-        factor="0.00269 for XM, XH and XW, 0.001 for XL330 and XC330, 0.0065 for STS",
+        asked="in a unit that depends on the servo's model",
+        factor="0.00269 for XM, XH and XW; 0.001 for XL330 and XC330; 0.0065 for STS",
     ),
 }
 """Plain name → its documentation."""

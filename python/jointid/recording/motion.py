@@ -71,8 +71,8 @@ def small_motion(recording: Recording) -> SmallMotion | None:
             unchanged=unchanged,
             noise=noise,
             text=f"the joint stands still: its position varies by {travel:.2g} {unit}, like noise",
-            details=f"the noise has a standard deviation of {noise:.2g} {unit}; the joint may also move too fast for "
-            "this sampling rate",
+            details=f"the noise has a standard deviation of {noise:.2g} {unit}; or the joint moves too "
+            "fast for this sampling rate",
         )
     if travel >= _FEWEST * step:
         return None
@@ -80,8 +80,9 @@ def small_motion(recording: Recording) -> SmallMotion | None:
         travel=travel,
         step=step,
         unchanged=unchanged,
-        text=f"the joint hardly moves: {travel:.3g} {unit}, {travel / step:.0f} encoder counts",
-        details=f"a count is {step:.3g} {unit}; {100.0 * unchanged:.0f} % of the samples show no change of position",
+        text=f"the joint hardly moves: only by {travel:.3g} {unit}, {travel / step:.0f} encoder counts",
+        details=f"one encoder count is {step:.3g} {unit}; {100.0 * unchanged:.0f} % of the samples show no change of "
+        "position",
     )
 
 

@@ -36,7 +36,7 @@ class Parts(Changes):
         if isinstance(wanted, slice):
             if wanted.step is not None:
                 raise InputError(
-                    "times are written as [start:stop]; `resample` changes the period",
+                    "a slice of times has no step: write [start:stop]; `resample` changes the sample period",
                     argument="step",
                     value=wanted.step,
                 )
@@ -65,17 +65,17 @@ class Parts(Changes):
         Parameters
         ----------
         start, stop : float, optional
-            Times on the recording's clock [s], both included. Default: the first and last sample.
+            First and last time on the recording's clock [s], both included. Default: the first and last sample.
 
         Returns
         -------
         Recording
-            The samples with the same time stamps and velocities, derived velocities too.
+            Recording of these samples. Time stamps and velocities are unchanged, derived velocities too.
 
         Raises
         ------
         InputError
-            Fewer than 8 samples would be left, or a bound is not a number.
+            The interval contains fewer than 8 samples, or `start` or `stop` is not a number.
         """
         from jointid.recording.slicing import slice_between
 
@@ -89,15 +89,16 @@ class Parts(Changes):
         Parameters
         ----------
         parts : int, optional
-            Number of parts; their lengths differ by one sample at most.
+            Number of parts. The lengths of the parts differ by at most one sample.
         at : sequence of float, optional
-            Instead of `parts`: increasing times on the recording's clock [s] at which a new part begins.
-            A sample at such a time belongs to the new part.
+            Increasing times at which a new part begins, on the recording's clock [s]; instead of `parts`. A sample
+            at such a time belongs to the new part.
 
         Returns
         -------
         tuple of Recording
-            Parts named ``"NAME 1/3"``, ..., with the same time stamps and velocities, derived velocities too.
+            Parts with the names ``"NAME 1/3"``, ... Time stamps and velocities are unchanged, derived velocities
+            too.
 
         Raises
         ------

@@ -40,12 +40,12 @@ def too_large(signals: Mapping[str, FloatArray]) -> tuple[str, int] | None:
 
 # Largest usual magnitude of a joint with a gear, in SI units, and likely reasons for a larger one.
 _USUAL_AMOUNTS = {
-    ("position", "revolute"): (4.0 * math.pi, "degrees or counts, or the motor’s side"),
-    ("velocity", "revolute"): (20.0, "degrees a second or rpm, or the motor’s side"),
+    ("position", "revolute"): (4.0 * math.pi, "degrees, counts, or a motor-side angle"),
+    ("velocity", "revolute"): (20.0, "degrees per second, rpm, or a motor-side velocity"),
     ("torque", "revolute"): (5e3, "mN·m or a raw reading"),
     ("current", "revolute"): (200.0, "mA"),
     ("position", "prismatic"): (10.0, "millimetres"),
-    ("velocity", "prismatic"): (10.0, "millimetres a second"),
+    ("velocity", "prismatic"): (10.0, "millimetres per second"),
     ("torque", "prismatic"): (1e5, "mN or a raw reading"),
     ("current", "prismatic"): (200.0, "mA"),
 }
@@ -64,7 +64,7 @@ def range_remark(signal: str, low: float, high: float, kind: str = "revolute") -
     Examples
     --------
     >>> range_remark("position", -59.9, 59.9)
-    'up to 9.5 turns: degrees or counts, or the motor’s side?'
+    'up to 9.5 turns: degrees, counts, or a motor-side angle?'
     >>> range_remark("position", -1.0, 1.0)
     ''
     """

@@ -105,7 +105,8 @@ def _recognise_products(
         unit = speed_unit(time, position, values["velocity"])
         if unit is None:
             raise InputError(
-                "no unit of this name in the servos' manuals agrees with the derivative of the position",
+                "servo manuals give units for this column name, but none of these units agrees with the "
+                "derivative of the position",
                 argument="velocity",
                 place=f"{table.header_place}, column {table.headers[velocity.index]!r}",
                 remedy=(

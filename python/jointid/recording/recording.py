@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 class Recording(Parts):
     """The signals of one joint over time, in SI units, read-only.
 
-    Values are on the output (link) side of the gear unless the name says otherwise. For a
-    prismatic joint read metres for radians and newtons for newton metres.
+    Values are on the output (link) side of the gear, except motor torque and current. For a prismatic joint,
+    radians are metres, and newton metres are newtons.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ class Recording(Parts):
     position : array_like, shape (n,)
         Joint angle [rad] or travel [m].
     velocity : array_like, shape (n,), optional
-        [rad/s] or [m/s]. Default: derived from the position, never across a gap (`velocity_derived` is then
-        True). The derivative is a second-order difference on the true time stamps. If the noise is too large for
-        it, local cubics over 5 to 101 samples replace it; noise and motion set their length at each sample.
-        A single sample between two gaps gets 0; no window includes it.
+        Velocity [rad/s] or [m/s]. Default: derived from the position, never across a gap (`velocity_derived` is
+        then True). The derivative is a second-order difference on the true time stamps. If its noise is too large,
+        local cubics over 5 to 101 samples replace it. Noise and motion determine this number. A single sample
+        between two gaps has the velocity 0; no window includes this sample.
     torque : array_like, shape (n,), optional
-        Torque of the actuator at the output, commanded or from the motor [N·m], or force [N].
+        Torque of the actuator at the output [N·m], or force [N]: the command, or the motor's measured torque.
     sensor : array_like, shape (n,), optional
         Raw reading of the joint's torque sensor.
     reference : array_like, shape (n,), optional
@@ -50,17 +50,17 @@ class Recording(Parts):
     link_position : array_like, shape (n,), optional
         Position behind the gear, from a second encoder [rad] or [m].
     temperature : array_like, shape (n,), optional
-        [°C].
+        Temperature [°C].
     motor_torque : array_like, shape (n,), optional
         Torque on the motor's side of the gear [N·m].
     current : array_like, shape (n,), optional
         Motor current [A].
     late : array_like, shape (n,), optional
-        Session cycles without a sample between the row before and this row; 0.5 for a command that was not
-        confirmed. Identification leaves these intervals out. Default: 0 throughout.
+        Number of session cycles without a sample before this row. A command that the drive does not confirm adds
+        0.5. Identification leaves out intervals with a value above 0. Default: 0 throughout.
     extra : mapping of str to array_like, each of shape (n,), optional
-        More signals under your own names, e.g. another joint's velocity or the torque of a model.
-        ``Model.terms`` says how they enter. They are linear between samples. Default: none.
+        More signals by name, e.g. another joint's velocity or the torque of a model. ``Model.terms`` defines their
+        effect. Between samples, extra signals are interpolated linearly. Default: none.
     kind : {"revolute", "prismatic"}
         Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
@@ -77,8 +77,8 @@ class Recording(Parts):
     Raises
     ------
     InputError
-        A signal is not one-dimensional, not finite, too short or of another length; time does not
-        strictly increase; or an option has an unknown value.
+        A signal is not one-dimensional, is not finite, or has a wrong length. Time does not strictly increase, or
+        an option has an unknown value.
 
     Examples
     --------
@@ -152,20 +152,20 @@ class Recording(Parts):
         kind: str | None = None,
         torque_hold: str | None = None,
     ) -> Self:
-        """Return the recording in a data frame (pandas or similar).
+        """Return the recording from a data frame (pandas or similar).
 
         Parameters
         ----------
         df : DataFrame
-            Object with `columns` and `df[column]`. Headers have the same meaning as in a file. The index counts as
-            a column if it has a name ("time_s"), or holds dates or durations.
+            Data frame, or another object with `columns` and `df[column]`. Headers have the same meaning as in a
+            file. The index is read as a column if it has a name ("time_s"), or contains dates or durations.
         columns, units, scale, extra, gear_ratio, side, sample_period, kind, torque_hold
             Same as in `load`.
 
         Raises
         ------
         InputError
-            Same errors as in `load`; rows are named by their 0-based number.
+            Same errors as in `load`. Messages count rows from 0.
         """
         from jointid.recording.contents import read_contents
         from jointid.recording.dataframe import FrameTable
@@ -196,25 +196,25 @@ class Recording(Parts):
     def resample(self, *, period: float | None = None, rate: float | None = None) -> Self:
         """Return the recording on a uniform clock.
 
-        `identify` does not need this: it uses the recorded time stamps, and interpolation correlates the noise.
-        Use it for methods that need equal steps, such as spectra and filters.
+        `identify` uses the recorded time stamps, because interpolation correlates the noise. Use `resample` for
+        methods that need equal time steps, such as spectra and filters.
 
-        Each gap-free stretch begins at its own first sample. Signals are interpolated linearly; a held torque
-        (``torque_hold="zoh"``: torque, motor_torque and current) keeps its last value. Gaps remain gaps.
-        There is no filter: at a lower rate, noise aliases.
+        After each gap, the clock starts again at the first sample. Gaps remain gaps. Signals are interpolated
+        linearly. With ``torque_hold="zoh"``, torque, motor_torque and current keep their last value. Signals are
+        not filtered: at a lower rate, noise is aliased.
 
         Parameters
         ----------
         period : float, optional
             Time between samples [s].
         rate : float, optional
-            Instead of `period`: samples per second [Hz].
+            Samples per second [Hz], instead of `period`.
 
         Returns
         -------
         Recording
-            Derived velocities are interpolated like recorded ones and stay marked as derived.
-            ``metadata["resampled_from"]`` is the former median period [s].
+            Derived velocities are interpolated like recorded velocities, and stay marked as derived.
+            ``metadata["resampled_from"]`` is the median period before resampling [s].
 
         Raises
         ------
@@ -231,13 +231,13 @@ class Recording(Parts):
     def to_pandas(self) -> pd.DataFrame:
         """Return the recording as a data frame in SI units, one row per sample.
 
-        `Recording.from_dataframe` returns an equal recording, bit for bit.
+        `Recording.from_dataframe` converts the data frame back to a bit-identical recording.
 
         Returns
         -------
         DataFrame
-            Columns are the signals by name, extra signals as ``"extra_NAME"``. The index is the time [s].
-            The frame's `attrs` hold the joint's kind, `torque_hold` and the metadata.
+            Data frame with the time [s] as index. Columns have the names of the signals, or ``"extra_NAME"`` for an
+            extra signal. The frame's `attrs` hold the joint's kind, `torque_hold` and the metadata.
 
         Raises
         ------
@@ -257,7 +257,7 @@ class Recording(Parts):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file, completely or not at all.
 
-        `load` returns an equal recording, bit for bit.
+        `load` reads a bit-identical recording from this file.
 
         Parameters
         ----------
@@ -267,9 +267,9 @@ class Recording(Parts):
         Raises
         ------
         InputError
-            The name has another ending, or the folder does not exist.
+            The file name has another ending, or the folder does not exist.
         OSError
-            The file cannot be written; an existing one is untouched.
+            The file cannot be written; an existing file is unchanged.
         """
         from jointid.recording.saving import save_recording
 

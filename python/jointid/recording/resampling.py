@@ -29,7 +29,7 @@ def resampled(recording: Samples, period: float | None, rate: float | None) -> d
     if recording.duration / step > _MOST:
         raise InputError(
             f"a period of {step!r} s over {recording.duration:.6g} s gives more than {_MOST} "
-            "samples; seconds are expected",
+            "samples; state the period in seconds",
             argument=argument,
         )
     stretches = _stretches(recording)
@@ -37,7 +37,7 @@ def resampled(recording: Samples, period: float | None, rate: float | None) -> d
     time = np.concatenate(clocks)
     if len(time) < SHORTEST:
         raise InputError(
-            f"a period of {step!r} s over {recording.duration:.6g} s leaves {len(time)} "
+            f"a period of {step!r} s over {recording.duration:.6g} s gives only {len(time)} "
             f"samples; at least {SHORTEST} are needed",
             argument=argument,
         )
@@ -100,7 +100,7 @@ def _check_gaps(recording: Samples, time: FloatArray, step: float, argument: str
     if not (time[1:] > time[:-1]).all():
         raise InputError(
             f"a period of {step!r} s is below the resolution of time stamps near "
-            f"{float(np.abs(time).max()):.6g} s; a longer one is needed",
+            f"{float(np.abs(time).max()):.6g} s; a longer period is needed",
             argument=argument,
         )
     if len(find_gaps(time)) != len(recording.gaps):

@@ -47,7 +47,7 @@ class Samples:
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """Names of the signals present, time first, always in the same order."""
+        """Names of the recorded signals in a fixed order, time first."""
         return tuple(name for name in SIGNALS if getattr(self, name) is not None)
 
     @functools.cached_property
@@ -90,7 +90,7 @@ class Samples:
         return derived_velocity(self.time, self.position, self.gaps, self.sample_period)
 
     def unit(self, signal: str) -> str:
-        """Return the unit of a signal, e.g. ``"rad/s"``; ``"1"`` for the sensor, ``""`` for an extra one without."""
+        """Return a signal's unit, e.g. ``"rad/s"``: ``"1"`` for the sensor, ``""`` for an extra signal without unit."""
         if signal in self.extra:
             return unit_of_extra(self.metadata, signal)
         check_signal_name(signal, "signal")

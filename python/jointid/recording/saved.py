@@ -39,7 +39,7 @@ def saved_attributes(text: str, place: str) -> dict[str, object]:
     schema = attributes.get("schema")
     if schema != SCHEMA:
         raise InputError(
-            f"this jointid reads schema {SCHEMA}; a later version may have written the recording",
+            f"this version of jointid reads schema {SCHEMA}; a later version may have written the recording",
             argument="schema",
             value=schema,
             place=place,

@@ -40,7 +40,7 @@ def checked_shift(shift: object) -> dict[str, float]:
     for name, value in shift.items():
         if name not in SHIFTED:
             raise InputError(
-                f"only these signals have a delay against the position: {', '.join(SHIFTED)}",
+                f"only the delay of these signals against the position can be removed: {', '.join(SHIFTED)}",
                 argument="shift",
                 value=name,
             )

@@ -26,8 +26,8 @@ def checked_ratio(gear_ratio: object, argument: str = "gear_ratio") -> float:
     """
     if not is_finite(gear_ratio) or gear_ratio == 0:
         raise InputError(
-            "motor angle per joint angle is expected: a number other than 0, negative if they turn in opposite "
-            "directions",
+            "motor angle per joint angle is expected: a number other than 0, negative if motor and joint turn in "
+            "opposite directions",
             argument=argument,
             value=gear_ratio,
         )
@@ -113,7 +113,8 @@ def stated_sides(
     for name, each in require_mapping("side", stated, "{'velocity': 'motor'}").items():
         if name not in moving:
             raise InputError(
-                f"only {', '.join(moving)} have a side of the gear", argument=f"side.{name}"
+                f"only {', '.join(moving)} can have a side (motor or joint)",
+                argument=f"side.{name}",
             )
         if each not in SIDES:
             raise InputError('"motor" or "joint" is expected', argument=f"side.{name}", value=each)
@@ -172,8 +173,8 @@ def _unstated_torque(
 def _on_both_sides(side: str, other_sides: Mapping[str, str]) -> InputError:
     names = " and ".join(other_sides)
     return InputError(
-        f"the position is on the {side} side, but the {names} on the {next(iter(other_sides.values()))} side; the gear "
-        "ratio is needed to combine them",
+        f"the signals are on different sides: position on the {side} side, {names} on the "
+        f"{next(iter(other_sides.values()))} side; the gear ratio is needed to combine these signals",
         argument="gear_ratio",
         value=None,
         remedy=Action("call", {"gear_ratio": ...}, function="load"),

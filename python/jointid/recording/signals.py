@@ -89,7 +89,7 @@ def check_signal_name(name: object, argument: str) -> None:
     """
     if name not in SIGNALS:
         close = closest(name, SIGNALS)
-        of_motor = Action("call", {"side": {close: "motor"}}, "if it is the motor's", "load")
+        of_motor = Action("call", {"side": {close: "motor"}}, "for a motor-side signal", "load")
         sided = close in ("position", "velocity") and "motor" in str(name).casefold()
         raise InputError(
             f"{name!r} is not a signal",
@@ -216,7 +216,7 @@ def check_signals(
     for name, values in signals.items():
         if len(values) != len(time):
             raise InputError(
-                f"{len(values)} samples, but time has {len(time)}; all signals need the same number",
+                f"{len(values)} samples, but time has {len(time)}; all signals need the same number of samples",
                 argument=name,
                 place=source,
             )
@@ -249,5 +249,7 @@ def check_signals(
         )
     if not np.isfinite(4.0 * (float(time[-1]) - float(time[0]))):
         raise InputError(
-            "the span is too long for a float; seconds are expected", argument="time", place=source
+            "the times span more than a float can hold; seconds are expected",
+            argument="time",
+            place=source,
         )

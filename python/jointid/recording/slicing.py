@@ -23,7 +23,7 @@ def slice_between(time: FloatArray, start: float | None, stop: float | None) -> 
     left = max(0, kept.stop - kept.start)
     if left < SHORTEST:
         raise InputError(
-            f"{low!s} s to {high!s} s leaves {left} samples of {len(time)} "
+            f"from {low!s} s to {high!s} s there are {left} of {len(time)} samples "
             f"({_span(time)}); at least {SHORTEST} are needed",
             argument="stop" if start is None else "start",
         )
@@ -44,7 +44,7 @@ def slices_of(time: FloatArray, parts: int | None, at: Sequence[float] | None) -
         if part.stop - part.start < SHORTEST:
             raise InputError(
                 f"part {number} of {len(slices)} would have {part.stop - part.start} "
-                f"samples of {len(time)}; at least {SHORTEST} are needed",
+                f"of {len(time)} samples; at least {SHORTEST} are needed",
                 argument="parts" if at is None else "at",
             )
     return slices
@@ -54,8 +54,8 @@ def _even_edges(length: int, parts: Any) -> list[int]:
     number = isinstance(parts, int | np.integer) and not isinstance(parts, bool)
     if not number or not 1 <= parts <= length // SHORTEST:
         raise InputError(
-            f"an integer from 1 to {length // SHORTEST} is expected: of {length} samples, each "
-            f"part needs at least {SHORTEST}",
+            f"an integer from 1 to {length // SHORTEST} is expected: the recording has {length} samples, and "
+            f"each part needs at least {SHORTEST}",
             argument="parts",
             value=parts,
         )
@@ -77,7 +77,7 @@ def _edges_between(time: FloatArray, at: Any) -> list[int]:
             )
         if index and not times[index - 1] < value:
             raise InputError(
-                f"the time before it is {times[index - 1]!s} s, and the times must increase",
+                f"the times must increase, but the previous time is {times[index - 1]!s} s",
                 argument=f"at[{index}]",
                 value=float(value),
             )

@@ -115,7 +115,9 @@ def _undecided(step: float, units: Sequence[Unit], place: str) -> InputError:
     if units and step == 1.0:
         remedies.append(_COUNTED)
     return InputError(
-        f"{reason}: {' and '.join(shown)}" if units else f"{reason}, which is too long in any unit",
+        f"{reason}: {' and '.join(shown)}"
+        if units
+        else f"{reason}; this step is too long in any unit",
         argument="time",
         place=place,
         remedy=tuple(remedies) or "choose another column",

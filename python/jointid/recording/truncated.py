@@ -68,7 +68,7 @@ def no_sample(metadata: Mapping[str, Any]) -> str:
     reason = metadata.get("stop")
     if reason:
         return f"the session ended before its first sample: {reason}"
-    killed = "; it was killed, or the power failed" if metadata.get("truncated") else ""
+    killed = "; the program was killed, or the power failed" if metadata.get("truncated") else ""
     return f"the session ended before its first sample{killed}"
 
 

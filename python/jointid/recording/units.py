@@ -204,14 +204,14 @@ def unit_named(
         )
     if unit is None and isinstance(text, str) and is_mega(text):
         raise InputError(
-            f"the prefix M is mega, a million; milli is m{text.strip()[1:]}",
+            f"the prefix M means mega; milli is m{text.strip()[1:]}",
             argument=argument,
             value=text,
             place=place,
         )
     if unit is None:
         raise InputError(
-            f"unknown unit; known are {', '.join(unit_names(dimensions))}",
+            f"unknown unit; choose one of {', '.join(unit_names(dimensions))}",
             argument=argument,
             value=text,
             place=place,

@@ -23,7 +23,7 @@ def page_of(result: Result, extras: Extras) -> Page:
     """
     if kind_of(result) not in KINDS:
         raise InputError(
-            "this has no report; only results of identify, compare, design, simulate and sweep have one",
+            "this has no report; only results of identify, compare, design, simulate and sweep have reports",
             argument="result",
             value=type(result).__name__,
         )

@@ -61,20 +61,21 @@ def save_report(
 ) -> Path:
     """Write the report of a result as one self-contained page, completely or not at all.
 
-    The page begins with the verdict or the answer. It contains its pictures, and suits phones and dark screens.
+    The page begins with the verdict or the answer. It contains all pictures, and can be read on phones and dark
+    screens.
 
     Parameters
     ----------
     result : Result
         Result of `identify`, `compare`, `design`, `simulate`, `sweep` or `commission`.
     path : path
-        Path that ends in .html, .md or .txt. The last two have captions instead of pictures. An existing file
+        Path that ends in .html, .md or .txt. A .md or .txt file has captions instead of pictures. An existing file
         is replaced.
     action : callable
-        Returns the words of a finding's advice. Default: as at a Python prompt.
+        Function that returns the text of a finding's advice. Default: the text for a Python prompt.
     recordings : Recording or sequence of Recording, optional
-        The recordings of an `Estimate`, in its order. The page then shows their signals, with unused parts
-        shaded, and the residual over position. Default: a page without these pictures.
+        Recordings of an `Estimate`, in the order of its identification. The page then shows their signals, with
+        unused parts shaded, and the residual over position. Default: a page without these pictures.
     rollout : Rollout, optional
         The rollout of a servo's or a robot's recordings. The page then shows the logged and the simulated motion
         of each run or joint. Default: a page without these pictures.
@@ -86,7 +87,7 @@ def save_report(
     Raises
     ------
     InputError
-        The argument is not a result, the estimate has other recordings, the file ending is another one, or
+        The argument is not a result, the recordings are not those of the estimate, the file has another ending, or
         the folder does not exist.
     OSError
         The file cannot be written. An existing file is unchanged.

@@ -59,8 +59,7 @@ def compare_robot_models(
     recordings : RobotRecording, or sequence of it
     robot : Robot
     models : sequence of Model or str
-        Friction models to compare, for all joints. Default: "coulomb_viscous" and "stribeck", with and without
-        ``:asymmetric``.
+        Friction models to compare, for all joints. Default: "coulomb_viscous" and "stribeck".
     inertia : sequence of str
         Inertias to compare: any of "urdf", "scaled" and "free". Default: all.
     folds : int
@@ -110,7 +109,7 @@ def compare_robot_models(
                 left_out[f"inertia {mode}, {model}"] = str(error)
     if not rows:
         raise InputError(
-            f"no candidate can be fitted: {next(iter(left_out.values()))}", argument="inertia"
+            f"no model can be fitted: {next(iter(left_out.values()))}", argument="inertia"
         )
     verdict = judged([_entrant(row) for row in rows], paired=True)
     reasoned = [
@@ -165,8 +164,8 @@ def _models(models: object, robot: Robot) -> list[str]:
     names = [friction_models(each, robot.names)[0] for each in found]
     if {name_of(each) for each in names} - set(MODELS):
         raise InputError(
-            f"expected are {', '.join(MODELS)}, each also as NAME:asymmetric. Name no joints: the comparison chooses "
-            "each joint's model.",
+            f"the models are {', '.join(MODELS)}, each also as NAME:asymmetric. A mapping from joints to models is not "
+            "expected: the comparison chooses each joint's model.",
             argument="models",
             value=models,
         )
@@ -187,9 +186,7 @@ def _row(attempt: Attempt, mode: Inertia, model: str, blocks: Whole) -> Compared
             if measured > 0.0:
                 scores[fold, joint] = float(np.linalg.norm(missed[place])) / measured
     if np.all(np.isnan(scores), axis=1).any():
-        raise InputError(
-            "in one of the blocks, no joint moves", argument="folds", value=len(scores)
-        )
+        raise InputError("no joint moves in one of the blocks", argument="folds", value=len(scores))
     means = np.nanmean(scores, axis=1)
     return ComparedRobotModel(
         inertia=mode,

@@ -83,7 +83,7 @@ def identify_robot(
         )
     if robot.drive is not None and robot.drive.free and inertia != "urdf":
         raise InputError(
-            "with a free gain the URDF's links give the scale of the torque, so the links cannot be identified, too",
+            "with a free gain, the URDF's links give the scale of the torque, so the links cannot be identified",
             argument="inertia",
             value=inertia,
             remedy=Action("call", {"inertia": "urdf"}, function="identify_robot"),

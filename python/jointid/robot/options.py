@@ -16,8 +16,8 @@ class RobotFitOptions(MaskOptions, total=False):
         float | None,
         Option(
             kind="float or int, optional",
-            help="Duration of the windows [s]; a whole number is the number of windows. Default: from the noise of the "
-            "velocities, at most 0.1 s; closer to 0.1 s for recordings of several minutes or more.",
+            help="Duration of the windows [s], or, as a whole number, their number. Default: a duration from the "
+            "noise of the velocities, at most 0.1 s; recordings of several minutes or more have longer windows.",
         ),
     ]
     min_speed: Annotated[
@@ -34,10 +34,10 @@ class RobotFitOptions(MaskOptions, total=False):
             kind="mapping, optional",
             help='Delay of the "torque" against the position [s], to be removed; positive: the torque is late. One '
             "for all joints, a sequence with one for each, or a mapping by joints' names, e.g. "
-            '``{"torque": 0.001}``; "torque_filter" is the time constant of its low-pass filter [s]. An '
-            "empty mapping shifts nothing. Default: identified, with one delay for all joints, another for a joint "
-            "that clearly differs, or a filter if it explains more. A torque that is early by more than one sample is "
-            "reported and not shifted.",
+            '``{"torque": 0.001}``; "torque_filter" is the time constant of the torque\'s low-pass '
+            "filter [s]. An empty mapping shifts nothing. Default: identified: one delay for all joints, another one "
+            "for a joint that clearly differs, or a filter if it explains more of the torque. A torque that is early "
+            "by more than one sample is reported, but not shifted.",
         ),
     ]
 
@@ -50,12 +50,12 @@ class RobotOptions(RobotFitOptions, total=False):
         Option(
             kind="Model, str or mapping, optional",
             help='Friction of the joints: "coulomb_viscous", "stribeck", "smooth_coulomb_viscous" (Coulomb friction '
-            'rises with the speed), or "auto": a joint has static friction if '
-            "this predicts its held-out torque better. With ``:asymmetric`` after the name, or "
+            'rises with the speed), or "auto": a joint gets static friction if '
+            "this model predicts its held-out torque better. With ``:asymmetric`` after the name, or "
             '``Model(asymmetric=True)``, friction differs between the directions: "viscous" is the mean, '
             '"viscous_difference" half the difference (positive − negative). Half the difference of Coulomb '
-            'friction is in "torque_offset". With ``:load_friction`` it also grows with the torque of the links. A '
-            "mapping from joint names to models sets some of them. "
+            'friction is in "torque_offset". With ``:load_friction``, friction also grows with the torque of the '
+            "links. A mapping from joint names to models sets the models of these joints. "
             'Default: the robot\'s models, otherwise "auto".',
         ),
     ]

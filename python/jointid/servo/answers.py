@@ -39,6 +39,6 @@ def answer(
         *values([parameters[name] for name in ordered]),
     ]
     if rollout_error is not None:
-        lines.append(f"rollout: {np.degrees(rollout_error):.2f}° from the log, median of {runs}")
+        lines.append(f"rollout: position error {np.degrees(rollout_error):.2f}°, median of {runs}")
     lines += findings(estimate.findings, action, _FINDINGS, saved)
     return printable("\n".join(lines))

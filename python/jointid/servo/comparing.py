@@ -106,7 +106,7 @@ def _labels(
         )
     if len(set(labels)) < 2:
         raise InputError(
-            "at least two groups of runs are needed, one to be held out",
+            "at least two groups of runs are needed, because one is held out",
             argument="groups",
             value=[str(label) for label in labels],
         )

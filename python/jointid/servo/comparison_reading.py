@@ -64,4 +64,4 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "groups", "one group for each of the runs is expected"
     for name in ("errors", "bistable"):
         if len(d[name]) != len(d["models"]) or any(len(row) != runs for row in d[name]):
-            yield name, f"a list of {runs} values, one for each run, is expected for each model"
+            yield name, f"each model needs a list of {runs} values, one for each run"

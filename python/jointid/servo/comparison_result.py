@@ -30,13 +30,13 @@ class ServoComparison(KeptResult):
     ----------
     models : tuple of str
     errors : ndarray, shape (models, runs)
-        Mean absolute error of the position in each run, simulated with a fit to other runs [rad].
+        Mean absolute error of the simulated position in each run [rad]. The fit uses only other runs.
     bistable : ndarray of bool, shape (models, runs)
     runs : tuple of str
     groups : tuple of str
         Group of each run; runs of a group were held out together.
     estimate : ServoEstimate
-        Estimate with the best model, from all runs.
+        Estimate of the best model from all runs.
     """
 
     models: tuple[str, ...]
@@ -50,7 +50,7 @@ class ServoComparison(KeptResult):
 
     @property
     def medians(self) -> Array:
-        """Median of each model's errors [rad]. A single bistable run hardly changes it."""
+        """Median of each model's errors [rad]. A single bistable run hardly changes a median."""
         return np.asarray(np.median(self.errors, axis=1))
 
     @property
@@ -101,12 +101,12 @@ class ServoComparison(KeptResult):
             ]
             for row in self._rows()
         ]
-        head = f"Closed loop of {self._setting}: mean absolute error"
+        head = f"Closed loop of {self._setting}: mean absolute error of the position"
         lines = [head, "", *aligned(table), "", f"best: {self.best}"]
         return "\n".join([*lines, "", self.estimate.report(verbose=True)] if verbose else lines)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the estimate has the format of `ServoEstimate.to_dict`."""
+        """Return the whole comparison in JSON's types; the estimate has the format of `ServoEstimate.to_dict`."""
         from jointid.servo.comparison_reading import KIND, SCHEMA
 
         return {
@@ -122,7 +122,7 @@ class ServoComparison(KeptResult):
         }
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
@@ -150,7 +150,8 @@ class ServoComparison(KeptResult):
         Returns
         -------
         DataFrame
-            Indexed by model; median and worst error of the held-out runs [rad], and the number of bistable runs.
+            Data frame indexed by model: median and largest error of the held-out runs [rad], and number of bistable
+            runs.
 
         Raises
         ------

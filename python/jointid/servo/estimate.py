@@ -26,39 +26,41 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
     joint : Joint
         The joint that was passed to `identify`.
     parameters : mapping of str to ParameterEstimate
-        "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), the coefficients of the friction model ("viscous",
-        "coulomb"), "load_friction" (dry friction per torque through the gear: load plus motor), "inertia" (of the
-        drive, at the output), and the derived "torque_constant" (k_t at the output) and "resistance".
+        Parameters by name: "torque_per_voltage" (k_t/R), "back_emf" (k_t²/R), the coefficients of the friction
+        model ("viscous", "coulomb"), "load_friction" (dry friction per torque through the gear: load plus motor),
+        "inertia" (of the drive, at the output), and the derived "torque_constant" (k_t at the output) and
+        "resistance".
     findings : tuple of Finding
     model : str
         Name of the friction model.
     values : ndarray, shape (n,)
-        The parameters up to the inertia. Load friction is 0 if the model has none.
+        Values of the parameters up to "inertia". Load friction is 0 if the model does not include it.
     draws : ndarray, shape (draws, n)
-        The same for resampled runs.
+        The same parameters from fits to resampled runs.
     load_friction : bool
-        Whether the model has friction of the load.
+        Whether the model includes load friction.
     separable : bool
-        Whether windows with and without drive separate back-EMF from viscous friction.
+        Whether the data separate back-EMF from viscous friction. Then some windows contain a driven motor and others
+        a motor that turns freely.
     lead : float
-        Time by which a row's position is older than its duty [s].
+        Time by which a row's position is older than the row's duty [s].
     lead_found : bool
         Whether the lead was estimated.
     command_lag : float or None
-        Mean delay from a row to its command [s]: half a row if the command is held from row to row, 0 if it moves
-        linearly. None if the position loop is not known.
+        Mean delay from a row to its command [s]: half a sample period if the command is held until the next row, 0
+        if the command moves linearly. None if the position loop is not known.
     windows : int
-        Windows used.
+        Number of windows used.
     window, slowest : float
-        Duration of a window [s], and the slowest motion that is used [rad/s].
+        Duration of a window [s], and lowest speed of the used motion [rad/s].
     runs : tuple of str
         Names of the runs.
     moving : tuple of float
-        Share of each run that is used.
+        Used share of each run.
     rms : float
-        Root mean square of the residual, as a mean over a window [N·m].
+        Root mean square of the windows' mean residuals [N·m].
     relative_residual : float
-        The same, relative to the load's torque.
+        `rms` relative to the load's torque.
     seconds : float
         Wall time [s].
     """
@@ -93,7 +95,7 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
         Parameters
         ----------
         verbose : bool
-            Whether to return everything: intervals, meanings, the fit, and all findings. Default False.
+            Whether to return the complete report: intervals, meanings, the fit, and all findings. Default False.
         """
         from jointid.servo.answers import answer
         from jointid.servo.tables import text_report
@@ -101,7 +103,7 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
         return text_report(self) if verbose else answer(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the estimate in JSON's types. It contains everything except `draws`."""
+        """Return the estimate in JSON's types, with all attributes except `draws`."""
         from jointid.servo.document import document_of
 
         return document_of(self)
@@ -109,18 +111,18 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
     document = to_dict
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     def save(self, path: str | Path) -> Path:
-        """Write the estimate as JSON, or the identified joint as a joint file (.toml); return its path.
+        """Write the estimate as JSON, or the identified joint as a joint file (.toml); return the file's path.
 
         Raises
         ------
         InputError
-            The file has another ending, or the folder does not exist.
+            The file name has another ending, or the folder does not exist.
         OSError
-            The file cannot be written; an existing one is untouched.
+            The file cannot be written; an existing file is unchanged.
 
         Examples
         --------
@@ -143,7 +145,7 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimate from a JSON text. It contains everything except `draws`.
+        """Return the estimate from a JSON text, with all attributes except `draws`.
 
         Raises
         ------
@@ -157,12 +159,12 @@ class ServoEstimate(ServoEstimateRecord, KeptResult):
         return servo_estimate_of(read_json(require_text(text)), cls)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the parameters as a data frame, one row each.
+        """Return the parameters as a data frame, one row per parameter.
 
         Returns
         -------
         DataFrame
-            Indexed by name, with the columns of `Estimate.to_pandas`.
+            Data frame indexed by name, with the columns of `Estimate.to_pandas`.
 
         Raises
         ------

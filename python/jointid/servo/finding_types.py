@@ -8,30 +8,30 @@ TYPES = {
         FindingType(
             code="no_known_load",
             severity="blocking",
-            meaning="no load is known, so the scale of the motor's torque is unknown: all values are known "
-            "only up to a common factor",
+            meaning="no load is known, so the scale of the motor's torque is unknown. All values are known only up to "
+            "one common factor",
             advice="state mass and centre of mass of the load in `[link]`",
         ),
         FindingType(
             code="inseparable_back_emf",
-            meaning="the motor is driven throughout. Back-EMF and viscous friction then have the same effect: only "
-            "their sum is known. Of k_t and R, only k_t / R is known",
+            meaning="the motor is driven throughout, so back-EMF and viscous friction have the same effect. Only the "
+            "sum of the two and the ratio k_t / R are known",
             advice="record runs in which the torque is switched off while the load swings, or state the resistance",
         ),
         FindingType(
             code="at_bound",
-            meaning="a value ended at its bound 0: the runs show none of this effect. Info unless the value is torque "
-            "per voltage or inertia",
+            meaning="a value ended at its bound, 0, because the runs do not show its effect. Info for all values "
+            "except torque per voltage and inertia",
             advice="record runs with other gains and motions",
         ),
         FindingType(
             code="undetermined",
-            meaning="the 95 % interval is wider than ±25 % of the value. Info for viscous friction",
+            meaning="the 95 % interval of a value is wider than ±25 % of the value. Info for viscous friction",
             advice="record more runs, with other gains and motions",
         ),
         FindingType(
             code="poor_fit",
-            meaning="the model leaves more than 35 % of the load's torque unexplained",
+            meaning="the residual is larger than 35 % of the load's torque",
             advice="check scale and sign of the duty, the position's unit, the load, and the link's angle",
         ),
     )

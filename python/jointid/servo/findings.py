@@ -43,11 +43,11 @@ def _inseparable(estimate: ServoEstimate, unknowns: Unknowns) -> Iterator[Findin
     linear = estimate.parameters[unknowns.layout.linear]
     total = estimate["back_emf"] + linear.value
     yield TYPES["inseparable_back_emf"].finding(
-        f"only the sum of back-EMF and {linear.meaning} is known, {total:.3g} {linear.unit}",
+        f"only the sum of back-EMF and {linear.meaning} is known: {total:.3g} {linear.unit}",
         Action("record", text="runs in which the torque is switched off while the load swings"),
         Action("inspect", text="the winding's resistance, and state it in the joint's drive"),
-        details="the motor is driven throughout, so both brake alike; only k_t / R is known, not k_t and R; "
-        f"{percent(unknowns.share)} of the sum is taken as back-EMF, {_chosen(estimate)}",
+        details="the motor is always driven, so back-EMF and friction brake in the same way; k_t / R is known, k_t and "
+        f"R are not; {percent(unknowns.share)} of the sum is taken as back-EMF, {_chosen(estimate)}",
         parameters=("back_emf", linear.name, *MOTOR),
         evidence={"sum": Measured(total, linear.unit)},
     )
@@ -62,7 +62,7 @@ def _chosen(estimate: ServoEstimate) -> str:
 def _not_sensed(estimate: ServoEstimate) -> Iterator[Finding]:
     if estimate.joint.link is None:
         yield TYPES["no_known_load"].finding(
-            "no load is known, so all values have an unknown factor",
+            "no load is known, so all values have one unknown common factor",
             Action("inspect", text="mass and length of the load, and state the joint's link"),
             details="the scale of the motor's torque is unknown",
             parameters=tuple(estimate.parameters),
@@ -88,7 +88,7 @@ def _at_bound(estimate: ServoEstimate) -> Iterator[Finding]:
         )
         blocking = name in ("torque_per_voltage", "inertia")
         yield TYPES["at_bound"].finding(
-            f"{name.replace('_', ' ')} ended at its bound 0: the runs show none",
+            f"{name.replace('_', ' ')} ended at its bound 0: the runs do not show its effect",
             _OTHER_RUNS,
             details=upto,
             severity="warning" if blocking else "info",
@@ -119,7 +119,7 @@ def _vague(estimate: ServoEstimate) -> Iterator[Finding]:
 def _poor_fit(estimate: ServoEstimate) -> Iterator[Finding]:
     if estimate.relative_residual > _POOR:
         yield TYPES["poor_fit"].finding(
-            f"{percent(estimate.relative_residual)} of the load's torque stays unexplained",
+            f"the model does not explain {percent(estimate.relative_residual)} of the load's torque",
             Action(
                 "inspect",
                 text="scale and sign of the duty, the position's unit, the load, and the link's angle",

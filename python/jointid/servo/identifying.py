@@ -239,7 +239,7 @@ def _terms(model: Model) -> tuple[Layout, bool]:
         )
     if gravity == "free":
         raise InputError(
-            "the load's gravity is the servo's only known torque, so it cannot be free",
+            "the load's gravity is the servo's only known torque, so gravity cannot be free",
             argument="gravity",
             value=gravity,
         )

@@ -19,7 +19,7 @@ class ServoFitOptions(TypedDict, total=False):
         float,
         Option(
             kind="float",
-            help="Windows with slower motion are left out [rad/s]. Default 0.1.",
+            help="Speed below which windows are left out [rad/s]. Default 0.1.",
             default=SLOWEST,
         ),
     ]
@@ -27,8 +27,8 @@ class ServoFitOptions(TypedDict, total=False):
         float | None,
         Option(
             kind="float, optional",
-            help="Time by which a row's position is older than its duty [s], because the bus reads them one after the "
-            "other. Default: estimated if the position loop is known and the duty is logged, otherwise 0.",
+            help="Time by which the position of a row is older than the duty of this row [s]. The bus reads both one "
+            "after the other. Default: estimated if the position loop is known and the duty is logged, otherwise 0.",
         ),
     ]
 
@@ -41,14 +41,14 @@ class ServoOptions(ServoFitOptions, total=False):
         Option(
             kind="Model, str or mapping, optional",
             help='Friction model without shape parameters, such as "coulomb_viscous", with or without `load_friction`. '
-            "Default: the joint's model, otherwise one with load friction.",
+            "Default: the joint's model, otherwise a model with load friction.",
         ),
     ]
     draws: Annotated[
         int,
         Option(
             kind="int",
-            help="Number of resampled sets of runs for errors and intervals. Default 200; 0: none.",
+            help="Number of resampled sets of runs for errors and intervals. Default 200; 0 computes no errors.",
             default=200,
         ),
     ]

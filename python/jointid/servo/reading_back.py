@@ -115,7 +115,7 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "parameters", f"these are expected: {', '.join(sorted(needed))}"
     for name, entry in names.items():
         if entry["name"] != name:
-            yield f"parameters.{name}.name", "this is not the name of the entry"
+            yield f"parameters.{name}.name", "this name differs from the key of its entry"
     if len(d["settings"]["moving"]) != len(d["settings"]["runs"]):
         yield "settings.moving", "one number for each of the runs is expected"
     yield from empty_calls(d["findings"])

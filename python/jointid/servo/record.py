@@ -44,7 +44,7 @@ class ServoEstimateRecord:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Findings that may bias values or make them unusable."""
+        """Findings of severity "warning" or "blocking"."""
         return tuple(each for each in self.findings if each.severity != "info")
 
     def __getitem__(self, name: str) -> float:

@@ -144,10 +144,10 @@ def initial_state(run: ServoSignals) -> tuple[float, float]:
 def _needed(joint: Joint, name: str, value: float | None) -> float:
     if value is None:
         raise InputError(
-            "a rollout needs its value",
+            "a rollout needs this value",
             argument=name,
             place=joint.owner,
-            remedy="identify the servo first, or state it in the joint file",
+            remedy="identify the servo first, or state this value in the joint file",
         )
     return value
 

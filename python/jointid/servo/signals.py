@@ -93,7 +93,7 @@ def _run(recording: Recording, drive: VoltageDrive, number: int) -> ServoSignals
         duty = np.clip(gain * late, -loop.saturation, loop.saturation) * on
     else:
         raise InputError(
-            "there is neither a signal duty, nor a reference with a known position loop",
+            "the recording has neither a signal duty nor a reference with a known position loop",
             argument="duty",
             place=place,
             remedy=(
@@ -119,7 +119,7 @@ def _of_full_voltage(duty: Array, place: str) -> Array:
     top = float(np.abs(duty).max())
     if top > _LARGEST:
         raise InputError(
-            f"it reaches {top:.4g}, but 1 is the full voltage",
+            f"the duty reaches {top:.4g}, but 1 is the full voltage",
             argument="duty",
             place=place,
             remedy="state its scale in the joint file's [drive]: duty_scale = 0.01 for percent",
@@ -133,7 +133,7 @@ def _supply(recording: Recording, drive: VoltageDrive, place: str) -> Array:
         return np.full(len(recording.time), drive.supply)
     if "supply" not in recording.extra:
         raise InputError(
-            "it is neither in the joint's drive nor in the recording",
+            "the supply voltage is neither in the joint's drive nor in the recording",
             argument="supply",
             place=place,
             remedy=(

@@ -192,8 +192,8 @@ def _command(estimate: ServoEstimateRecord) -> list[tuple[str, str]]:
     if estimate.command_lag is None:
         return []
     if estimate.command_lag == 0.0:
-        text = "no sign that it is held between rows: interpolated linearly"
+        text = "interpolated linearly: no evidence that the command is held between rows"
         return [("command", text)]
     late = f"{1e3 * estimate.command_lag:.1f} ms"
-    text = f"held between rows; it acts {late} after its row on average (identified)"
+    text = f"held between rows; the command acts {late} after its row on average (identified)"
     return [("command", text)]

@@ -60,9 +60,9 @@ def side_by_side(
     for what, entries in lists.items():
         if len(entries) not in (1, count) or not entries:
             raise InputError(
-                f"has {len(entries)} entries where others have {count}",
+                f"this argument has {len(entries)} entries, but others have {count}",
                 argument=what,
-                remedy="give one for all, or as many",
+                remedy="give one entry for all, or the same number of entries",
             )
         lists[what] = entries if len(entries) == count else entries * count
     for seed in lists["seeds"]:

@@ -28,14 +28,14 @@ _MOST_PERIODS = 1e9  # largest number of control periods of a simulation, as in 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SimulatedBatch:
-    """Results of many simulations, one entry each.
+    """Results of many simulations, with one entry for each simulation.
 
     Parameters
     ----------
     error : ndarray, shape (n,)
         Root mean square of the true tracking error after the settling time [rad].
     peak_error : ndarray, shape (n,)
-        Largest magnitude of that error [rad].
+        Largest magnitude of the true tracking error after the settling time [rad].
     saturations : ndarray, shape (n,)
         Number of control periods in which the torque limit cut the command.
     recordings : tuple of SimulatedRecording
@@ -74,18 +74,18 @@ def simulate_batch(
     threads: int = 0,
     name: str = "",
 ) -> SimulatedBatch:
-    """Simulate many joints, controllers or seeds along one trajectory, side by side.
+    """Simulate many joints, controllers or seeds along one trajectory, in parallel.
 
-    Each result is bit-identical to that of `simulate`.
+    Each result is bit-identical to the result of `simulate`.
 
     Parameters
     ----------
     joints, controllers, seeds
-        One value for all, or a sequence. All sequences have the same length.
+        One value for all simulations, or a sequence with one value for each. All sequences have the same length.
     settling : float, optional
         Time at the start that the tracking error excludes [s]. Default: a sixth of the duration.
     recordings : bool
-        Whether to keep the signals too. Default False.
+        Whether to keep the recordings with all signals. Default False.
     threads : int
         Number of threads. Default 0: all processors.
     trajectory, duration, control_period, sample_period, integration_step, sensors, payload, \
@@ -99,7 +99,7 @@ bristle, position, velocity, name
     Raises
     ------
     InputError
-        As in `simulate`, or sequences of different lengths.
+        The errors of `simulate`, or sequences have different lengths.
 
     Examples
     --------

@@ -49,8 +49,8 @@ class DesignedFor:
             return ""
         more = f", and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
         return printable(
-            f"{self.source} was designed for {', '.join(found[:_SHOWN])}{more}: the values that the joint reaches "
-            "and the expected errors are unknown for this bench; design the motion again for it"
+            f"{self.source} was designed for {', '.join(found[:_SHOWN])}{more}: its reached values and expected "
+            "errors are unknown for this bench; design the motion again for this bench"
         )
 
     def _joints(self, joint: Joint | None) -> Iterator[str]:

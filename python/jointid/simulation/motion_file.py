@@ -52,7 +52,7 @@ COMMENTS = {
     "trajectory.amplitude": "rad, or m of a prismatic joint",
     "trajectory.frequency": "rad/s",
     "trajectory.phase": "rad",
-    "trajectory.offset": "where it starts and ends",
+    "trajectory.offset": "position at the start and at the end",
     "trajectory.fade": "s, in which the sines grow at the start and fade at the end",
     "trajectory.duration": "s",
 }
@@ -100,7 +100,7 @@ def check_schema(document: Mapping[str, Any]) -> None:
     schema = document.get("schema")
     if isinstance(schema, int) and not isinstance(schema, bool) and schema > SCHEMA:
         raise InputError(
-            f"this jointid reads schemas up to {SCHEMA}",
+            f"this version of jointid reads schemas up to {SCHEMA}",
             argument="schema",
             value=schema,
             remedy="update jointid",
@@ -113,7 +113,7 @@ def believed_of(tables: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     for name, (low, high) in found.items():
         if low > high:
             raise InputError(
-                "the first must not be above the second",
+                "the first value must not be above the second",
                 value=[low, high],
                 place=f"believed.{name}",
             )

@@ -45,7 +45,7 @@ class Peaks:
         low, high = (finite_number("peaks", "position", bound) for bound in self.position)
         if not low <= high:
             raise InputError(
-                "the first must not be above the second",
+                "the first value must not be above the second",
                 argument="position",
                 value=[low, high],
                 place="peaks",

@@ -16,7 +16,7 @@ from jointid.simulation.terms import require_compensated, require_simulated, req
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Bristle:
-    """Friction behind a spring: Dahl's model (2-4), or LuGre's (2-6) with damping and static friction.
+    """Friction behind a spring: Dahl's model (thesis 2-4) or, with damping and static friction, LuGre's (2-6).
 
     While the joint slides, friction follows the joint's own model.
 
@@ -62,7 +62,7 @@ class Values:
         value = self.get(name)
         if value is None:
             raise InputError(
-                "has no value, which a simulation needs",
+                "a simulation needs a value of this parameter",
                 argument=f"parameters.{name}",
                 remedy=f"give the joint a value of '{name}'",
             )
@@ -173,20 +173,20 @@ def torque_limit(joint: Joint) -> float | None:
 def control_estimates(joint: Joint) -> dict[str, Any]:
     """Return the parameters that a model-based controller assumes, from a joint's values.
 
-    Use it as ``jid.AdaptiveRobust(**jid.control_estimates(joint))``. Friction that differs between the
-    directions is averaged. Gravity, a constant offset, ripple and harmonics are not compensated. The
-    controller's feedback corrects them.
+    Use the result as ``jid.AdaptiveRobust(**jid.control_estimates(joint))``. If friction differs between the
+    directions, its mean is used. Gravity, a constant offset, ripple and harmonics are not compensated. The
+    controller's feedback corrects their effect.
 
     Parameters
     ----------
     joint : Joint
-        A joint with values for its parameters, e.g. an estimate's.
+        Joint with values for its parameters, e.g. the joint of an estimate.
 
     Returns
     -------
     dict of str to float
-        `inertia`, `coulomb`, `viscous`, `static` and `stribeck` (0 where the model has none),
-        `sensor_gain` and `sensor_offset` (0 without a sensor: the inertia then includes the link's).
+        Values of `inertia`, `coulomb`, `viscous`, `static` and `stribeck`, 0 for terms that the model does not have.
+        `sensor_gain` and `sensor_offset` are 0 without a sensor; the inertia then includes the inertia of the link.
 
     Raises
     ------
@@ -227,7 +227,7 @@ def _inertias(joint: Joint, values: Values) -> tuple[float, float]:
     drive = joint.reflected_inertia
     if drive is None:
         raise InputError(
-            "has no value, which a simulation needs",
+            "a simulation needs a value of this parameter",
             argument="inertia",
             remedy="give the joint inertia or rotor_inertia, or a value of the parameter 'inertia'",
         )

@@ -20,7 +20,7 @@ from jointid.simulation.trajectory import Trajectory
 
 @dataclass(frozen=True)
 class Scenario:
-    """Joint, controller, trajectory and sensors: all settings of a simulation without its seed.
+    """All settings of a simulation except its seed: joint, controller, trajectory, sensors and options.
 
     Parameters
     ----------
@@ -93,14 +93,14 @@ class Scenario:
         recordings: bool = True,
         threads: int = 0,
     ) -> SimulatedBatch:
-        """Simulate once for each seed or controller. Results are bit-identical to those of `simulate`.
+        """Simulate once for each seed or controller. The results are bit-identical to the results of `simulate`.
 
         Parameters
         ----------
         seeds : int or sequence of int
             Seeds of the sensors' noise. Default 0.
         controllers : optional
-            Controllers that replace the scenario's own: one, or one per seed.
+            Controllers that replace the scenario's controller: one for all simulations, or one for each seed.
         recordings : bool
             Whether to keep the signals. Default True.
         threads : int
@@ -130,16 +130,16 @@ class Scenario:
         )
 
     def options(self) -> list[str]:
-        """Return the names that `changed` takes; ``truth.NAME`` is a true parameter of the joint."""
+        """Return the names of the fields that `changed` accepts. ``truth.NAME`` is a true parameter of the joint."""
         own = [item.name for item in fields(self)]
         for part in ("sensors", "controller"):
             own += [f"{part}.{name}" for name in getattr(self, part).asdict()]
         return own + [f"truth.{name}" for name in self.joint.parameters]
 
     def changed(self, changes: Mapping[str, Any]) -> Self:
-        """Return the scenario with other fields, ``sensors.FIELD``, ``controller.FIELD`` or ``truth.PARAMETER``.
+        """Return the scenario with new fields, ``sensors.FIELD``, ``controller.FIELD`` or ``truth.PARAMETER``.
 
-        Whole fields change first, and then the fields inside them.
+        Complete fields change first, and then single values inside fields.
 
         Raises
         ------
@@ -168,19 +168,19 @@ class Scenario:
             return replace(self, joint=self.joint.with_parameters(values))
         if part not in ("sensors", "controller"):
             raise InputError(
-                "is not known; fields inside sensors, controller or truth can be changed",
+                "there is no such field; only fields inside sensors, controller or truth can be changed",
                 argument=f"Scenario.{part}.{next(iter(values))}",
             )
         return replace(self, **{part: getattr(self, part).replace(**values)})
 
     @property
     def truth(self) -> dict[str, float]:
-        """True values of the joint's parameters, where they have one [SI]."""
+        """True values of the joint's parameters in SI units; parameters without a value are omitted."""
         values = ((name, p.value) for name, p in self.joint.parameters.items())
         return {name: value for name, value in values if value is not None}
 
     def believing(self, joint: Joint) -> Controller:
-        """Return the controller with what `control_estimates` reads from a joint, e.g. an estimate's.
+        """Return the controller with the values of `control_estimates` for a joint, e.g. an identified joint.
 
         Raises
         ------
@@ -191,7 +191,7 @@ class Scenario:
 
 
 def believing(controller: Controller, joint: Joint) -> Controller:
-    """Return a controller with what `control_estimates` reads from a joint, e.g. an estimate's."""
+    """Return a controller with the values of `control_estimates` for a joint, e.g. an identified joint."""
     estimates = control_estimates(joint)
     used = {n: v for n, v in estimates.items() if n in controller.asdict()}
     if "coulomb" not in used:

@@ -20,12 +20,11 @@ class Truth(Mapping[str, Any]):
     Parameters
     ----------
     parameters : mapping of str to float
-        Values by name [SI].
+        True parameter values by name, in SI units.
     signals : mapping of str to ndarray, shape (n,)
-        `position` [rad], `velocity` [rad/s], `acceleration` [rad/s²], `friction`, `link_torque`
-        and `motor_torque` [N·m], at the recording's samples. `friction` is the friction torque of the
-        drive, `link_torque` the torque at the sensor. `control_velocity` [rad/s] is the velocity that
-        the controller used.
+        `position` [rad], `velocity` [rad/s], `acceleration` [rad/s²], `friction`, `link_torque` and `motor_torque`
+        [N·m], at the recording's samples. `friction` is the friction torque of the drive. `link_torque` is the torque
+        at the sensor. `control_velocity` [rad/s] is the velocity that the controller used.
 
     Examples
     --------
@@ -58,7 +57,7 @@ class Truth(Mapping[str, Any]):
 class SimulatedRecording(Recording):
     """A recording with the true signals of its simulation in `truth.signals`.
 
-    A file and `resample` keep the true parameters, but not the true signals.
+    A saved file and the result of `resample` keep the true parameters, but not the true signals.
 
     Examples
     --------
@@ -77,8 +76,8 @@ class SimulatedRecording(Recording):
         for name, values in truth.signals.items():
             if len(values) != len(self.time):
                 raise InputError(
-                    f"has {len(values)} samples and time has {len(self.time)}; all signals need the "
-                    "same number",
+                    f"this signal has {len(values)} samples, but time has {len(self.time)}; all signals need "
+                    "the same number of samples",
                     argument=f"true_signals.{name}",
                 )
         vars(self)["truth"] = truth

@@ -31,7 +31,7 @@ _MOST_SINES = 5e7  # samples of all sines, to find the peak of a multisine
 
 @dataclass(frozen=True, repr=False)
 class Trajectory:
-    """A desired motion over time. Its class methods create one.
+    """Desired motion over time. The class methods create a trajectory.
 
     For open-loop control, the values are torques [N·m] instead of angles.
 
@@ -50,7 +50,7 @@ class Trajectory:
     def thesis(
         cls, amplitude: float = math.radians(20.0), *, cycle: float = 6.0, duration: float = 12.0
     ) -> Self:
-        """Return amplitude / 1.3 · (sin wt − ½ sin 2wt), which starts at rest (thesis 6-1).
+        """Return amplitude / 1.3 · (sin wt − ½ sin 2wt) with w = 2π / cycle, a motion from rest (thesis 6-1).
 
         Parameters
         ----------
@@ -157,7 +157,7 @@ class Trajectory:
         Parameters
         ----------
         amplitude : float or sequence of float
-            Amplitude of each sine [rad]. A single number, here or below, is for all sines.
+            Amplitude of each sine [rad]. A single number of amplitude, frequency or phase is for all sines.
         frequency : float or sequence of float
             Angular frequency of each sine [rad/s].
         phase : float or sequence of float
@@ -165,7 +165,7 @@ class Trajectory:
         offset : float
             Start and end position [rad]. Default 0.
         fade : float
-            Time in which the sines grow at the start and fade at the end [s], smooth to the second
+            Duration of the fade-in at the start and of the fade-out at the end [s]. Both are smooth to the second
             derivative. The motion then starts and ends at rest at `offset`. Default 0: no fading.
         duration : float
             Duration [s].
@@ -191,7 +191,7 @@ class Trajectory:
 
     @classmethod
     def sigmoid(cls, distance: float, *, rise: float, duration: float) -> Self:
-        """Return a move by `distance` in the time `rise`: half a cosine, then rest.
+        """Return a move by `distance` along half a cosine in the time `rise`, then rest.
 
         Parameters
         ----------
@@ -234,7 +234,7 @@ class Trajectory:
 
     @classmethod
     def from_samples(cls, time: npt.ArrayLike, position: npt.ArrayLike) -> Self:
-        """Return the natural cubic spline through samples; its time starts at the first sample.
+        """Return the natural cubic spline through samples. Its time is 0 at the first sample.
 
         Parameters
         ----------
@@ -302,7 +302,7 @@ class Trajectory:
             times = np.empty((0, 0))
         if times.ndim > 1 or not np.isfinite(times).all():
             raise InputError(
-                "times [s] are expected, a number or several", argument="time", value=time
+                "one time or an array of times [s] is expected", argument="time", value=time
             )
         wanted = self.core.sample(np.atleast_1d(times))
         if times.ndim == 0:
@@ -385,7 +385,8 @@ def _samples(name: str, values: npt.ArrayLike, largest: float = math.inf) -> tup
         ) from None
     if array.ndim != 1:
         raise InputError(
-            f"one dimension is expected, the shape is {array.shape}", argument=f"Trajectory.{name}"
+            f"one dimension is expected, but the shape is {array.shape}",
+            argument=f"Trajectory.{name}",
         )
     outside = np.flatnonzero(np.isfinite(array) & (np.abs(array) > largest))
     if outside.size:

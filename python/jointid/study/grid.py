@@ -55,7 +55,7 @@ def _check_name(name: object, known: Sequence[str], scenario: Scenario | None) -
         return
     if part in ("sensors", "controller", "truth", "trajectory", "joint") and scenario is None:
         raise InputError(
-            "it is a setting of a simulation, but recordings are given",
+            "this setting needs a simulation, but recordings are given",
             argument=name,
             place="grid",
             remedy=Action(
@@ -101,7 +101,7 @@ def _label(name: str, value: Any) -> Label:
     if isinstance(value, tuple | list) and all(isinstance(v, str | int | float) for v in value):
         return ",".join(str(v) for v in value)
     raise InputError(
-        f"it has the value {shown(value)}, which a table cannot show",
+        f"a table cannot show the value {shown(value)}",
         argument=name,
         place="grid",
         remedy="give a mapping from labels to values",

@@ -61,7 +61,7 @@ def _answer(summary: Summary) -> list[str]:
         least, most = (choose(known, key=lambda each: each[0]) for choose in (min, max))
         if least[0] != most[0]:
             lines.append(
-                f"Most often with {cell_name(most[1].labels)} ({percent(most[0])}), least often with "
+                f"This share is largest with {cell_name(most[1].labels)} ({percent(most[0])}), and smallest with "
                 f"{cell_name(least[1].labels)} ({percent(least[0])})."
             )
     else:

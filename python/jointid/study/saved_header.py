@@ -66,16 +66,16 @@ def read_header(record: object, before: dict[str, Any] | None) -> dict[str, Any]
         raise InputError(f"this is not the first line of a study; {EXPECTED}")
     if record.get("schema") != SCHEMA:
         raise InputError(
-            f"this version of jointid reads {SCHEMA}",
+            f"this version of jointid reads schema {SCHEMA}",
             argument="schema",
             value=record.get("schema"),
         )
     header = _HEADER.read(record, "")
     if any(cell.keys() != set(header["swept"]) for cell in header["cells"]):
-        raise InputError("a value of each swept setting is expected", argument="cells")
+        raise InputError("each cell needs a value of each swept setting", argument="cells")
     if len(header["truths"]) not in (0, len(header["cells"])):
-        raise InputError("one for each cell is expected", argument="truths")
+        raise InputError("one truth for each cell is expected", argument="truths")
     for name in ("fingerprint", "swept", "cells"):
         if before is not None and header[name] != before[name]:
-            raise InputError("it differs from that of the first line", argument=name)
+            raise InputError("this field differs from the first line of the file", argument=name)
     return header

@@ -160,7 +160,7 @@ def read(path: Path) -> tuple[dict[str, Any], list[Row], int]:
         except InputError as error:
             raise error.at(f"{path}, line {number}") from None
     if header is None:
-        raise InputError(f"the file has no whole line; {EXPECTED}", place=str(path))
+        raise InputError(f"the file has no complete line; {EXPECTED}", place=str(path))
     return header, [rows[place] for place in sorted(rows)], length
 
 
@@ -200,4 +200,4 @@ def _difference(known: dict[str, Any], wanted: dict[str, Any]) -> str:
     for name, value in wanted["settings"].items():
         if known["settings"].get(name) != value:
             return f"another {name}"
-    return "other values behind the same labels"
+    return "other values with the same labels"

@@ -29,14 +29,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
 class Study(KeptResult):
-    """Many identifications, with one row each.
+    """Result of a sweep, with one row for each identification.
 
     Attributes
     ----------
     swept : tuple of str
         Names of the swept settings.
     cells : tuple of dict
-        Values of the swept settings, one combination each. Labels replace long values.
+        Combinations of the swept settings, as mappings from setting to value. Labels replace long values.
     trials : int
         Requested number of trials in each cell.
     seed : int
@@ -46,11 +46,11 @@ class Study(KeptResult):
     truths : tuple of dict
         Known true parameters of each cell, if cells differ; otherwise empty.
     rows : tuple of Row
-        Rows in the order of cells, then trials.
+        One row for each trial, ordered by cell and then by trial.
     settings : dict
-        Recordings or scenario, joint, options and version, as a record.
+        Description of recordings or scenario, joint, options and version.
     seconds : float
-        Wall time [s]; for a resumed study, of the last part.
+        Wall time [s]; for a resumed study, only of the last run.
 
     Examples
     --------
@@ -119,13 +119,12 @@ class Study(KeptResult):
         return self.truths[cell] if self.truths else self.truth
 
     def summary(self, *, within: float = 0.05) -> Summary:
-        """Return mean and spread of each cell and, if the truth is known, bias and success.
+        """Return mean and spread of each cell; with known true parameters, also bias and success.
 
         Parameters
         ----------
         within : float
-            A trial succeeds if the relative error of each parameter is at most this. Default 0.05, as in the
-            thesis.
+            Largest relative error of each parameter in a successful trial. Default 0.05, as in the thesis.
 
         Raises
         ------
@@ -160,14 +159,14 @@ class Study(KeptResult):
         Parameters
         ----------
         verbose : bool
-            Whether to return all cells. Default False: the best ten.
+            Whether to return all cells. Default False: only the best ten cells.
         """
         summary = self.summary()
         text = summary.text(len(self.cells)) if verbose else str(summary)
         return printable(f"{self.title}\n\n{text}")
 
     def to_dict(self) -> dict[str, Any]:
-        """Return header and rows of the study in JSON types. A number that is not finite is a text."""
+        """Return header and rows of the study in JSON types. A number that is not finite becomes a text."""
         rows = [row.asdict() for row in self.rows]
         document: dict[str, Any] = json_types({"kind": KIND, **header_of(self), "rows": rows})
         return document
@@ -175,23 +174,23 @@ class Study(KeptResult):
     document = to_dict
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json_text(self.to_dict())
 
     @classmethod
     def from_json(cls, text: str) -> Study:
-        """Return the study in a JSON text.
+        """Return the study from a JSON text.
 
         Parameters
         ----------
         text : str
-            Result of `to_json`.
+            JSON text from `to_json`.
 
         Raises
         ------
         InputError
-            The text is not JSON, is not a study, has another schema, or has an invalid value. The message
-            shows the place.
+            The text is not JSON, is not a study, has another schema, or has an invalid value. The message shows the
+            place in the text.
         """
         from jointid.study.reading_back import read_study
 
@@ -199,7 +198,9 @@ class Study(KeptResult):
         return study_of(header, rows)
 
     def save(self, path: str | os.PathLike[str]) -> Path:
-        """Write the table to .csv or .parquet, or the study to .jsonl or .json. If writing fails, no file changes.
+        """Write the table to .csv or .parquet, or the study to .jsonl or .json.
+
+        If writing fails, an existing file is unchanged.
 
         Returns
         -------
@@ -209,7 +210,7 @@ class Study(KeptResult):
         Raises
         ------
         InputError
-            The extension is another one, or the folder does not exist.
+            The file name has another ending, or the folder does not exist.
         """
         file = require_path("path", path)
         records = [header_of(self), *(row.asdict() for row in self.rows)]
@@ -218,7 +219,7 @@ class Study(KeptResult):
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Study:
-        """Return the study in a .jsonl or .json file, finished or not.
+        """Return the study from a .jsonl or .json file, finished or not.
 
         Raises
         ------

@@ -114,7 +114,9 @@ class Summary:
             for line in [header, *body]
         ]
         if len(self.cells) > most:
-            lines.append(f"the best {most} of {len(self.cells)}; to_pandas() and --table have all")
+            lines.append(
+                f"the best {most} of {len(self.cells)} cells; to_pandas() and --table have all cells"
+            )
         lines += summary_notes(self)
         return printable("\n".join(line.rstrip() for line in lines))
 

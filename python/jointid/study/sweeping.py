@@ -36,9 +36,9 @@ class StudyStep:
     Attributes
     ----------
     number, total : int
-        Number of finished trials, and number of all trials.
+        Number of finished trials, and total number of trials.
     rows : tuple of Row
-        Rows of the trials finished since the last call.
+        Rows of the trials that finished since the previous call.
 
     Examples
     --------
@@ -54,7 +54,7 @@ class StudyStep:
 
 
 class StudyInterruptedError(KeyboardInterrupt):
-    """Ctrl-C in a sweep. `study` has the rows finished so far.
+    """Ctrl-C in a sweep. `study` contains the rows of the finished trials.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ class StudyInterruptedError(KeyboardInterrupt):
 
 
 class StudyBrokenError(RuntimeError):
-    """A worker of a sweep's executor ended unexpectedly. `study` has the rows finished so far.
+    """A worker of a sweep's executor ended unexpectedly. `study` contains the rows of the finished trials.
 
     Parameters
     ----------
@@ -118,60 +118,62 @@ def sweep(
 ) -> Study:
     """Identify with every combination of some settings, several times each.
 
-    All cells have the same options of `identify`. A model without a name is "coulomb_viscous". In every cell,
-    trial t adds t to the seed of `search`, for the search and for the noise of a simulated recording.
-    `identify` with a row's seed gives the same row. With 0 threads, this process uses all threads, and an
-    executor uses one per trial. A grid over "ga" or its fields implies the method "ga", unless the call names
-    another. Callback, checkpoint and resume of `search` are refused.
+    All cells have the same unswept options of `identify`. A model without a name is "coulomb_viscous". In every
+    cell, trial t uses the seed of `search` plus t, for the search and for the noise of a simulated recording.
+    `identify` with a row's seed reproduces the row. If `search` has 0 threads, this process uses all processors,
+    and an executor uses one thread per trial. A grid over "ga" or its fields implies the method "ga", unless the
+    call names another method. `search` must not have a callback, checkpoint or resume.
 
     Parameters
     ----------
     subject : Recording, sequence of Recording, or Scenario
-        Recordings to identify from. A scenario is simulated once per trial, with the trial's seed.
+        Recordings for the identification, or a scenario. A scenario is simulated once per trial, with the trial's
+        seed.
     joint : Joint, optional
-        As in `identify`. Default with a scenario: the simulated joint. The search uses its bounds and known
-        values, not its parameters' values.
+        As in `identify`. Default with a scenario: the simulated joint. The search uses the joint's bounds and known
+        values, but not its parameters' values.
     grid : mapping of str to sequence or mapping, optional
-        Values of each setting, by its name, or a mapping from labels to values. Settings are: arguments of
-        `identify` (``"windows"``, ``"model"``, ``"model.FIELD"``, …); ``"method"``, ``"ga"`` and
-        ``"ga.FIELD"`` of the search; fixed parameters ``"parameters.NAME"``; and a scenario's fields,
-        ``"sensors.FIELD"``, ``"controller.FIELD"`` and ``"truth.NAME"``. Default: one cell.
+        Values of each setting by the setting's name, or a mapping from labels to values. Settings are: arguments of
+        `identify` (``"windows"``, ``"model"``, ``"model.FIELD"``, …); ``"method"``, ``"ga"`` and ``"ga.FIELD"`` of
+        the search; fixed parameters ``"parameters.NAME"``; and a scenario's fields, ``"sensors.FIELD"``,
+        ``"controller.FIELD"`` and ``"truth.NAME"``. Default: one cell.
     trials : int, optional
-        Number of trials of each combination. Default: 10 if trials differ (a scenario's noise, a random
-        search), otherwise 1.
+        Number of trials of each combination. Default: 10 with a scenario's noise or a random search, otherwise 1.
     standard_errors : bool
-        Whether to compute standard errors, which takes some milliseconds per trial. Default True.
+        Whether to compute standard errors (some milliseconds per trial). Default True.
     tracking : bool
-        Whether to simulate again with the identified and with the true parameters. This needs a scenario with
-        a controller that compensates friction. Default False.
+        Whether to simulate again with the identified and with the true parameters. The subject must be a scenario
+        with a controller that compensates friction. Default False.
     truth : mapping of str to float, optional
-        True parameters [SI], for biases and shares of success. Default: those of the recordings or the
-        scenario.
+        True parameters [SI], for bias and share of successful trials. Default: true parameters of the recordings or
+        the scenario.
     executor : concurrent.futures.Executor, optional
-        Runs the trials: a process pool, or a cluster's executor, such as Dask's ``client.get_executor()``. It
-        is not shut down. Default: this process.
+        Executor of the trials: a process pool, or a cluster's executor, such as Dask's ``client.get_executor()``.
+        It is not shut down. Default: this process.
     callback : callable, optional
-        Called with a `StudyStep` whenever trials finish. Return True to stop the sweep.
+        Function that is called with a `StudyStep` whenever trials finish. If the function returns True, the sweep
+        stops.
     output : path, optional
         File (.jsonl) that receives each row when its trial finishes.
     resume : bool
-        Whether to continue an existing `output`, also with more trials. Default False.
+        Whether to continue the study in an existing `output`, also with more trials. Default False.
     **options
 
     Returns
     -------
     Study
-        The study. Its rows are bit-identical for any executor and number of threads, resumed or not.
+        The study. Its rows are bit-identical for any executor and number of threads, also after resuming.
 
     Raises
     ------
     InputError
         Input is invalid. The message names the argument and the reason. Settings that cannot be used with a
-        recording give rows with the status "refused", and an error only if all are refused.
+        recording give rows with the status "refused". The sweep raises an error only if all rows are refused.
     StudyBrokenError
         A worker of the executor ended unexpectedly.
     StudyInterruptedError
-        Ctrl-C, raised within 0.1 s. It is a `KeyboardInterrupt`, and its `study` has the rows finished so far.
+        After Ctrl-C, within 0.1 s. The error is a `KeyboardInterrupt`; its `study` contains the rows of the
+        finished trials.
 
     Examples
     --------
@@ -203,7 +205,7 @@ def sweep(
                 "a file that ends in .jsonl is expected",
                 argument="output",
                 value=str(output),
-                remedy="save the study as a table when it is done",
+                remedy="save the study as a table when the sweep is done",
             )
         file = StudyFile(output, header, resume=resume)
     elif resume:

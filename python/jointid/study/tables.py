@@ -49,7 +49,7 @@ def save(
     Raises
     ------
     InputError
-        The extension is another one, or the folder does not exist.
+        The extension is unknown, or the folder does not exist.
     """
     if not path.parent.is_dir():
         raise InputError(

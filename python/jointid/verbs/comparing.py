@@ -82,47 +82,50 @@ def compare(
 ) -> Any:
     """Compare friction models by their prediction of held-out data.
 
-    One recording is cut into contiguous blocks; several recordings are one block each. Every model is fitted to all
+    One recording is cut into contiguous blocks. Several recordings are one block each. Every model is fitted to all
     blocks except one and predicts that block. This is repeated for every block. The chosen model has the fewest
-    parameters and a score within one standard error of the best (one-standard-error rule, Breiman et al., 1984).
+    parameters and a score within one standard error of the best score (one-standard-error rule, Breiman et al.,
+    1984).
 
-    - Joint: the residual of held-out windows decides. A model that the data do not support cannot be chosen: its
-      estimate from all data has the warning `model_too_rich`, or a parameter at a bound.
-    - Servo: the simulated closed loop of held-out runs decides. The model with the smallest median error is chosen.
-      `identify` defines which joints are servos.
-    - Robot: the held-out torque of all joints decides. Candidates are all inertias of the links with each model.
+    - Joint: the score is the residual of held-out windows. A model cannot be chosen if its
+      estimate from all data has the warning `model_too_rich` or a parameter at a bound.
+    - Servo: the score is the error of the simulated closed loop in held-out runs. The model with the smallest median
+      error is chosen. `identify` defines which joints are servos.
+    - Robot: the score is the residual of the held-out torque of all joints. Candidates are all combinations of
+      `inertia` and `models`.
 
-    Options are the same for all models. Delays are identified from all data. The default of windows is the shortest of
-    the models' defaults.
+    Options are the same for all models. Delays are identified from all data. The default duration of the windows is
+    the shortest default of all models.
 
     Parameters
     ----------
     recordings : Recording, RobotRecording, or sequence of these
     subject : Joint or Robot, optional
-        Known values, as in `identify`; the model's name and `asymmetric` are not used.
+        Known values, as in `identify`. The name and the field `asymmetric` of its model are not used.
     score : {"windows", "rollout"}, optional
-        Only for a joint with `voltage`: "windows" compares by its torque, "rollout" by its closed loop. Default: the
-        torque if `identify` uses it.
+        Score for a joint with `voltage`: "windows" compares the torque, "rollout" compares the simulated closed loop.
+        Default: "windows" if `identify` uses the torque, otherwise "rollout".
     models : sequence of Model, str or mapping, optional
-        Models or their texts, such as "coulomb_viscous:asymmetric". Default for a joint: all that these data allow,
-        with the gravity that `identify` would choose; `settings["left_out"]` lists the others. For a servo: with and
-        without friction of the load. For a robot: "coulomb_viscous" and "stribeck".
+        Models or their texts, such as "coulomb_viscous:asymmetric". Default for a joint: all models that these data
+        allow, with the gravity that `identify` would choose. `settings["left_out"]` lists the other models. Default
+        for a servo: models with and without `load_friction`. Default for a robot: "coulomb_viscous" and "stribeck".
     folds : int
-        Joint and robot: number of blocks of one recording, or largest number of groups of several. Default 5.
+        Joint and robot: number of blocks of one recording, or largest number of groups of several recordings. Default
+        5.
     **options
     callback : callable, optional
-        Joint: called with a `ComparisonStep` after every fit.
+        Joint: function that is called with a `ComparisonStep` after every fit.
 
     Other Parameters
     ----------------
     groups : sequence, optional
-        Servo: a label per run; runs with the same label are held out together. Default: by the position loop's gain
-        if there are several, otherwise each run alone.
+        Servo: one label for each run. Runs with the same label are held out together. Default: the gain of the
+        position loop, if the gains differ; otherwise each run is held out alone.
     threads : int
-        Servo: number of threads for the rollouts; 0 (default): all.
+        Servo: number of threads for the simulations. Default 0: all processors.
     **servo
     inertia : sequence of str
-        Robot: any of "urdf", "scaled" and "free" (all by default).
+        Robot: inertias to compare, any of "urdf", "scaled" and "free". Default: all.
     **robot
 
     Returns
@@ -132,7 +135,7 @@ def compare(
     Raises
     ------
     InputError
-        The input cannot be used, or the subject does not have an option. The error gives the reason.
+        The input cannot be used, or an option does not apply to the subject. The error states the reason.
     KeyboardInterrupt
         Ctrl-C.
 
@@ -161,7 +164,7 @@ def compare(
     kind = subject_of("compare", recordings, subject)
     if kind == "joints":
         raise InputError(
-            "compare of several joints takes one joint at a time, or a robot",
+            "compare accepts one joint or a whole robot, but not several joints",
             argument="recordings",
             value=recordings,
             remedy=("compare recordings.joint(NAME)", "give jid.Robot.from_urdf(path)"),

@@ -25,55 +25,58 @@ def design(
 ) -> Design:
     """Return the motion within limits that identifies a joint best.
 
-    Motions are sums of sines that start and end at rest. A genetic algorithm searches them. The score of a motion is
-    its information about the parameters. It comes from a noise-free simulation with the controller that will drive the
-    joint, for several joints within the prior. The best motions are then simulated with noise and identified.
+    Motions are sums of sines that start and end at rest. A genetic algorithm searches for the motion with the best
+    score. The score is the information of a motion about the parameters. The score comes from noise-free simulations
+    of several joints within the prior. The controller is the one that will drive the joint. The best motions are then
+    simulated with noise and identified.
 
-    After an estimate, the motion is the one that adds most information to its recordings. Joints are drawn from its
-    intervals, and the controller uses its values. Then identify both recordings together:
-    ``identify([first, second], joint)``.
+    After an estimate, the motion adds as much information as possible to the estimate's recordings. The simulated
+    joints are drawn from the estimate's intervals, and the controller uses its values. Then identify the old and the
+    new recording together: ``identify([first, second], joint)``.
 
     Parameters
     ----------
     subject : Joint or Estimate
         The motion is designed for the free parameters of its model.
     limits : MotionLimits or mapping, optional
-        Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of
-        the sensor [N·m]; every joint of the prior keeps them. Default: the joint's.
+        Position (low, high) [rad], velocity [rad/s], acceleration [rad/s²], torque [N·m] and range of the sensor
+        [N·m]. Every joint of the prior keeps these limits. Default: the joint's limits.
     duration : float
         Duration of the motion [s]. Default 12.
     controller : controller, optional
         The controller that will drive the joint. Default: an adaptive-robust law with the values of the nominal
         joint and without feedback of the torque sensor.
     sensors : Sensors, optional
-        Sensors of the simulation. Default: noise of 0.3 % of the torque limit at the torque sensor; without one, an
-        encoder of 8000 counts per motor revolution. After an estimate: with the noise of its residuals.
+        Sensors of the simulation. Default: a torque sensor with noise of 0.3 % of the torque limit; without a torque
+        sensor, an encoder of 8000 counts per motor revolution. Default after an estimate: sensors with the noise of
+        its residuals.
     parameters : sequence of str, optional
         Parameters to design for. Default: all free parameters.
     criterion : {"worst", "determinant"}
-        Minimize the largest relative error, or the product of all. Default "worst". A value near 0 counts as a
-        tenth of its range.
+        Error to minimize: the largest relative error ("worst"), or the product of all relative errors. Default
+        "worst". For a value near 0, the error is relative to a tenth of the range of the parameter.
     prior : mapping of str to (low, high), or sequence of mappings, optional
-        Ranges of the free parameters, or values of several joints; the first one is the nominal joint. Default: the
-        joint's bounds; 30 % around a value without bounds. After an estimate: drawn from its intervals.
+        Ranges of the free parameters, or values of several joints. The first joint is the nominal joint. Default: the
+        joint's bounds, or ±30 % of a value without bounds. Default after an estimate: values drawn from its
+        intervals.
     search : DesignSearch, optional
     control_period : float
         Period of the controller [s]. Default 0.001.
     known : Known, optional
         Joint: information about parameters from existing recordings.
     callback : callable, optional
-        Called with a `DesignProgress` at intervals; if it returns True, the search ends early.
+        Function that is called with a `DesignProgress` during the search. If it returns True, the search ends early.
 
     Other Parameters
     ----------------
     joint : Joint, optional
-        Estimate: facts that the identified joint lacks, such as a link.
+        After an estimate: joint with facts that the identified joint lacks, such as a link.
 
     Returns
     -------
     Design
-        After an estimate, errors are those expected from both recordings together; `before` has the errors of the
-        estimate.
+        After an estimate, the expected errors are those of an identification from the old and the new recording.
+        `before` has the errors of the estimate.
 
     Raises
     ------
@@ -118,10 +121,10 @@ def _refuse(subject: object) -> None:
         )
 
 
-_OF_ONE = "give a jid.Joint for one of its joints"
+_OF_ONE = "give a jid.Joint for one joint of the robot"
 _REMEDIES: dict[OtherKind, str] = {
     "robot": _OF_ONE,
     "robot estimate": _OF_ONE,
-    "servo estimate": "give its .identified joint, which takes a torque",
+    "servo estimate": "give the servo's joint `estimate.identified`, because its input is a torque",
     "joint estimates": "choose one: `found[NAME]`",
 }

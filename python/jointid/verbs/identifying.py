@@ -74,35 +74,40 @@ def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> 
     The torque balance is integrated over windows, so no acceleration is needed (thesis 4-21 to 4-24). The subject
     determines the method:
 
-    - A joint: from one recording or several.
-    - A servo, which is a joint with `voltage`: from runs without a torque signal. A servo is identified as any other
-      joint if each recording has a torque, a motor torque, or a current with the joint's `torque_constant`.
-      ``jid.load(..., columns={"torque": None})`` omits such a signal.
-    - Several joints: from one recording, each alone. Then each residual is compared with the motion of the others.
-    - A robot: from one or several recordings of all joints. All joints and the inertia of the links are identified
-      together.
+    - A joint is identified from one recording or several recordings.
+    - A servo is a joint with `voltage`. It is identified from runs without a torque signal. If each recording has a
+      torque, a motor torque, or a current with the joint's `torque_constant`, the servo is identified like any other
+      joint. ``jid.load(..., columns={"torque": None})`` omits a torque signal.
+    - Several joints are identified from one recording, one after the other. Then the residual of each joint is
+      compared with the motion of the other joints.
+    - A robot is identified from one or several recordings of all joints. Friction of all joints and inertia of the
+      links are identified together.
 
     Parameters
     ----------
     recordings : Recording, RobotRecording, or sequence of these
         Several recordings share all parameters except those of `per_recording`.
     subject : Joint, mapping of str to Joint, or Robot, optional
-        Known values, bounds and the model. For several joints: one for all, or by name. Default: inertia, friction and
-        an offset are identified with bounds from the data, and the sensor if the recording has one.
+        Known values, bounds and the model. For several joints: one `Joint` for all, or a mapping from names to
+        joints. Default: inertia, friction and an offset are identified with bounds from the data. A recorded torque
+        sensor is also identified.
     **options
 
     Other Parameters
     ----------------
     joints : iterable of str or int, optional
-        Several joints: names or numbers of the joints to identify. Default, and "all": all.
+        Several joints: names or numbers of the joints to identify. Default, or "all": all joints.
     couplings : bool
-        Several joints: whether residuals are compared with the other joints' motion. Default True.
+        Several joints: whether the residual of each joint is compared with the motion of the other joints. Default
+        True.
     callback : callable, optional
-        Several joints: called before each with its name, its number from 0, and the number of joints.
+        Several joints: function that is called before each joint is identified, with its name, its number (from 0),
+        and the number of joints.
     **servo
     inertia : {"urdf", "scaled", "free"}
-        Robot: inertias of the links: the URDF's, the URDF's scaled link by link, or identified as base parameters, the
-        combinations that motion shows. Default ``"urdf"``.
+        Robot: source of the inertias of the links. "urdf" uses the URDF's inertias, "scaled" scales them link by
+        link. "free" identifies base parameters, the combinations of inertias that affect the torque. Default
+        ``"urdf"``.
     **robot
 
     Returns
@@ -112,9 +117,9 @@ def identify(recordings: Any, subject: Any = None, **of_other_subjects: Any) -> 
     Raises
     ------
     InputError
-        The input cannot be used, or the subject does not have an option. The error gives the reason.
+        The input cannot be used, or an option does not apply to the subject. The error states the reason.
     KeyboardInterrupt
-        Ctrl-C; it is raised within 0.1 s.
+        After Ctrl-C, within 0.1 s.
 
     Examples
     --------

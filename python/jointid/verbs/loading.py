@@ -117,17 +117,17 @@ def load(
 
 @shows(loading.load, others={"joints": None, "by": None})
 def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
-    """Return the recording in a file: of one joint, of several joints, or several runs.
+    """Return the recording of one joint, of several joints, or of several runs from a file.
 
-    Headers are a signal's name with its unit, in upper or lower case: ``position_rad``, ``velocity [deg/s]``,
-    ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q), velocity (vel, speed), torque (tau,
-    force, motor_force, motor_torque_output, output_torque), sensor (sensor_raw, torque_sensor), reference
+    A header consists of a signal's name and its unit, in upper or lower case: ``position_rad``, ``velocity [deg/s]``,
+    ``torque_Nm``, ``time_ms``. Known names are time (t), position (pos, angle, q), velocity (vel, speed), torque
+    (tau, force, motor_force, motor_torque_output, output_torque), sensor (sensor_raw, torque_sensor), reference
     (position_ref, position_reference, goal_position), link_position, temperature, motor_torque and current
-    (motor_current). Other words around a name are allowed, as controllers write them: ``timestamp``, ``actual_q_0``,
-    ``Axis 1.ActPos``, ``joint1_pos``, ``effort``. A command is never read as a measurement. A signal without a unit is
-    assumed to be in SI units and listed in ``metadata["assumed_units"]``. If the size or the steps of time stamps show
-    another unit, they are read in it (``metadata["recognised_units"]``). An unreadable column of an optional signal is
-    omitted; ``metadata["left_out"]`` gives the reason. `docs/logs.md` has the rules.
+    (motor_current). Headers of common controllers are also known: ``timestamp``, ``actual_q_0``, ``Axis 1.ActPos``,
+    ``joint1_pos``, ``effort``. A commanded signal is never read as a measurement. A signal without a unit is assumed
+    to be in SI units; ``metadata["assumed_units"]`` lists it. If the size or the steps of the time stamps show
+    another unit, this unit is used (``metadata["recognised_units"]``). An unreadable column of an optional signal is
+    omitted; ``metadata["left_out"]`` states the reason. `docs/logs.md` lists all rules.
 
     Parameters
     ----------
@@ -135,85 +135,93 @@ def load(path: Any, subject: Any = None, **of_other_subjects: Any) -> Any:
         Name of a file, or a file or buffer that is open for reading (``io.StringIO``, ``io.BytesIO``). If a buffer has
         no name, its first bytes show the format.
 
-        Formats: text (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) or ``.npz``, from any program or
-        from `Recording.save`; MATLAB ``.mat`` (vectors, also in a struct, by their names; version 7.3 needs h5py);
-        ``.parquet`` (needs pyarrow); HDF5, ``.h5`` or ``.hdf5`` (needs h5py); a log of ROS messages (the extra
-        ``ros``): ``.mcap``, a ROS 2 bag (its folder, or one ``.db3`` of it), a ROS 1 ``.bag``; ``.json`` with a list of
-        records, or of WPILib's SysId, and ``.wpilog`` (the extra ``wpilib``); the folder of a LeRobot dataset, version
-        2 or 3, or one of its ``.parquet`` files (needs pyarrow).
+        Text files (``.csv``, ``.csv.gz``, ``.txt``, ``.tsv``, ``.log``, ``.dat``) and ``.npz`` files come from any
+        program or from `Recording.save`. MATLAB files (``.mat``) hold vectors, which may be in a struct; version 7.3
+        needs h5py. ``.parquet`` files need pyarrow. HDF5 files (``.h5``, ``.hdf5``) need h5py. Logs of ROS messages
+        need the extra ``ros``: ``.mcap``, a ROS 2 bag (its folder or one of its ``.db3`` files), or a ROS 1 ``.bag``.
+        A ``.json`` file holds a list of records or is written by WPILib's SysId. ``.wpilog`` files need the extra
+        ``wpilib``. A LeRobot dataset (version 2 or 3, needs pyarrow) is read from its folder or from one of its
+        ``.parquet`` files.
 
-        Commas, semicolons, tabs or blanks separate the cells of a text. If commas do not separate, decimal commas are
-        also read. Exports of TwinCAT Scope are also read. Several files, or a folder of them, are several runs.
+        Commas, semicolons, tabs or blanks separate the cells of a text file. If commas do not separate cells, a comma
+        may be the decimal point. Exports of TwinCAT Scope are also read. Several files, or a folder of files, are
+        several runs.
     subject : Joint or Robot, optional
-        The joint or robot of the recording. The gear ratio of a joint converts columns of the motor. For a servo, the
-        columns that its `voltage` names are kept as `extra`. For a robot, all joints are read. Default: not known.
+        The joint or robot of the recording. The gear ratio of a joint converts motor columns to the joint's side. For
+        a servo, the columns that its `voltage` names are kept as `extra`. For a robot, all joints are read. Default:
+        not known.
     joint : str or int, optional
-        The joint to read from a file with several, by its number or name in the headers:
+        Number or name of the joint to read from a file with several joints. The headers contain this number or name:
         ``motor_position_3_rad``, ``joint3_pos``, ``q3``, ``q[2]``, ``position.3``, ``elbow.position [rad]``,
-        ``elbow_position``. Columns without a joint, such as time, belong to all joints. `docs/several_joints.md` has
-        the rules. Default: the only joint.
+        ``elbow_position``. Columns without a joint, such as time, belong to all joints. `docs/several_joints.md`
+        lists all rules. Default: the only joint.
     joints : sequence of str or int, or "all", optional
-        The joints to read from a file with several, on one clock: a `RobotRecording`. Default: one joint.
+        The joints to read from a file with several joints on one clock; the result is a `RobotRecording`. Default:
+        one joint.
     by : str or int, optional
-        Header or 0-based number of the column that numbers the runs of a file: rows with the same value are one run,
-        named ``"NAME BY=VALUE"``. Default: the file holds one run.
+        Header or 0-based number of the column with the number of the run. Rows with the same value are one run with
+        the name ``"NAME BY=VALUE"``. Default: the file holds one run.
     columns : mapping of str to str, int or None, optional
         Signal → header or 0-based number of its column. None omits the signal; an omitted velocity is derived from
-        position. ``{joint}`` in a header is replaced by the joint: ``{"position": "enc_{joint}_rad"}``.
-        ``{"position": "1:6"}`` means the columns of six joints: the 0-based numbers of the first and the last. Default:
-        by the headers, also for signals that are not mapped.
+        position. ``{joint}`` in a header is replaced by the name or number of the joint:
+        ``{"position": "enc_{joint}_rad"}``. ``{"position": "1:6"}`` means the columns of six joints: the 0-based
+        numbers of the first and the last. Default: the headers show the columns. The headers also show the columns of
+        signals without an entry.
     units : mapping of str to str, optional
-        Signal → unit, e.g. ``{"position": "deg"}``. It overrides the header. Default: the header's unit.
+        Signal → unit, e.g. ``{"position": "deg"}``. This unit overrides the header. Default: the header's unit.
     scale : mapping of str to float, optional
-        Signal → factor from file units to SI units. It overrides the header. Use it for encoder counts
-        (``{"position": 2 * math.pi / 4096}``), a voltage that drives a known force, or a sign. Saved in
-        ``metadata["scale"]``. Default: the factor of the unit.
+        Signal → factor from file units to SI units. This factor overrides the header. Use it for encoder counts
+        (``{"position": 2 * math.pi / 4096}``), for a voltage with a known force per volt, or to change a sign.
+        ``metadata["scale"]`` contains the factors. Default: the factor of the unit.
     extra : collection of str or mapping of str to str or int, optional
-        Columns to keep as `Recording.extra`: their headers, which become the names, or name → header or 0-based number.
-        A known unit at the end of a header (``_rad_s``, ``[kNm]``, ``_kgm2``) is converted to SI; values without a unit
-        do not change. Every cell must be a finite number. Default: none; for a saved recording, the columns that it
-        has.
+        Columns to keep as `Recording.extra`: headers, which are also the names, or a mapping of name → header or
+        0-based number. A known unit at the end of a header (``_rad_s``, ``[kNm]``, ``_kgm2``) is converted to SI;
+        values without a unit do not change. Every cell must be a finite number. Default: no columns; for a saved
+        recording, its own extra columns.
     gear_ratio : float, or sequence of float, optional
-        Motor angle per joint angle, negative if they turn in opposite directions. Columns of the motor
+        Motor angle per joint angle, negative if motor and joint turn in opposite directions. Motor columns
         (``motor_position_3_rad``, ``motor_torque_3_Nm``) are converted to the joint's side. For several joints, one
-        value per joint. Default: that of the subject. Without a gear ratio, columns of the motor are not converted, and
-        ``metadata["side"]`` is "motor".
+        value per joint. Default: the gear ratio of the subject. Without a gear ratio, motor columns are not
+        converted, and ``metadata["side"]`` is "motor".
     side : mapping of str to str, optional
-        Signal → "motor" or "joint". Use it if a position, velocity, reference or torque is on the other side of the
-        gear than its header shows: ``{"velocity": "motor"}`` with the joint's position and `gear_ratio`. Default: by
-        the headers of a file that names its joints, otherwise the joint's.
+        Signal → "motor" or "joint". Use this option if the header of a position, velocity, reference or torque shows
+        the wrong side of the gear. Example: ``{"velocity": "motor"}`` with the joint's position and `gear_ratio`.
+        Default: the side in the headers, if they name joints; otherwise "joint".
     sample_period : float, optional
-        Time between rows [s], if the rate is constant; time stamps in the file are then ignored. Default: by the time
-        column.
+        Time between rows [s], if this time is constant. Time stamps in the file are then ignored. Default: the time
+        column decides.
     where : mapping of str to number or str, optional
-        Header → value: only rows with this value are kept. Default: all rows.
+        Header of a column → value. Only rows with this value in the column are kept. Default: all rows.
     kind : {"revolute", "prismatic"}, optional
-        Kind of the joint. Default: from the units: ``"prismatic"`` for metres or newtons, otherwise ``"revolute"``.
+        Kind of the joint. Default: the units decide: ``"prismatic"`` for metres or newtons, otherwise ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        Course of the torque between samples: held (zero-order hold) or linear. Default: as saved, otherwise not known.
+        Torque between samples: constant (zero-order hold) or linear. Default: the saved value, otherwise not known.
     drop_copies : bool
         Whether to omit rows that repeat all measured signals of the previous row. A logger that is faster than the bus
         of the drive writes such rows. A standstill of more than ten rows is kept. Default False.
     drop_invalid : bool
-        Whether to omit single damaged rows, at most a tenth of all. A row is damaged if a value is missing, not a
-        number, not finite or above 1e15. ``metadata["dropped_rows"]`` contains their number. Longer stretches become
-        gaps. For several joints, a row that is damaged in one joint is omitted in all. Default False.
+        Whether to omit single damaged rows, at most a tenth of all rows. A row is damaged if a value is missing, not
+        a number, not finite or above 1e15. ``metadata["dropped_rows"]`` is the number of omitted rows. Longer damaged
+        stretches become gaps. For several joints, a row that is damaged in one joint is omitted in all joints.
+        Default False.
     name : str, optional
-        Name of the recording. Default: as saved, otherwise the file's name without its ending.
+        Name of the recording. Default: the saved name, otherwise the file's name without its ending.
     topic : str, optional
-        File of messages: the topic of the recording. Default: the only one with joints.
+        Topic of the recording in a log of messages. Default: the only topic with joints.
     group : str, optional
-        HDF5 or MATLAB 7.3 file: path of the group (struct) with the datasets of the recording.
-        Default: the only one with such datasets.
+        HDF5 or MATLAB 7.3 file: path of the group (struct) with the datasets of the recording. Default: the only
+        group with such datasets.
     unpacked : int, optional
-        Largest size of a compressed file after unpacking, in bytes. Default: 64 MB or 50 times its size, whichever is
-        larger; larger files are refused. Each number counts 8 bytes; numbers of a packed text may take 100 MB.
+        Largest size of a compressed file after unpacking, in bytes. Default: 64 MB or 50 times the compressed size,
+        whichever is larger. Larger files are refused. Each number counts 8 bytes. The numbers of a packed text may
+        take 100 MB.
 
     Returns
     -------
     Recording, RobotRecording, or tuple of these
-        A tuple for several files, a folder or `by`. A `RobotRecording` is on the side of the gear that the headers
-        show; at the joint if one joint has signals of both sides, which needs `gear_ratio`.
+        The result is a tuple for several files, a folder or `by`. A `RobotRecording` is on the side of the gear that
+        the headers show. If one joint has signals of both sides, all signals are converted to the joint's side with
+        `gear_ratio`.
 
     Raises
     ------
@@ -251,7 +259,9 @@ def _reader(subject: object, options: dict[str, Any]) -> Callable[[Any], Any]:
     if is_robot(subject) or joints is not None:
         if isinstance(subject, Joint):
             raise InputError(
-                "load of several joints takes no single Joint", argument="subject", value=subject
+                "load of several joints cannot use a single Joint",
+                argument="subject",
+                value=subject,
             )
         word = "several joints"
         return lambda path: _said(ask, path, "load", word, load_robot, path, joints, **options)
@@ -303,7 +313,7 @@ def _said(function: Callable[..., Any], source: object, *arguments: Any, **optio
         if isinstance(source, str | os.PathLike) and (what := _of_ours(Path(source))):
             reader = "Joint" if what == "a joint" else "Result"
             raise InputError(
-                f"this is a file of {what}, no recording",
+                f"this is a file of {what}, not a recording",
                 place=os.fspath(source),
                 remedy=f"jid.{reader}.load(path) reads it",
             ) from None

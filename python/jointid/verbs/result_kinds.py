@@ -61,7 +61,7 @@ def _kind_of_file(path: Path) -> str:
 def _kind_of(document: Any) -> str:
     """Return the kind that a document names; designs and studies name none, and are recognized by their keys."""
     if not isinstance(document, Mapping):
-        raise InputError("this is no result of jointid", remedy=_REMEDY)
+        raise InputError("this is not a result of jointid", remedy=_REMEDY)
     kind = document.get("kind")
     if isinstance(kind, str) and kind.startswith(_MARK):
         return kind.removeprefix(_MARK)
@@ -69,14 +69,16 @@ def _kind_of(document: Any) -> str:
         return "study"
     if {"trajectory", "design"} <= document.keys():
         return "design"
-    raise InputError("this is no result of jointid", remedy=_REMEDY)
+    raise InputError("this is not a result of jointid", remedy=_REMEDY)
 
 
 def _class_of(kind: str) -> type[KeptResult]:
     if kind not in _HOMES:
         known = kind in KINDS
-        reason = f"a result of the kind '{kind}' is not read from a file"
-        raise InputError(reason if known else f"this jointid does not know the kind '{kind}'")
+        reason = f"a result of the kind '{kind}' cannot be read from a file"
+        raise InputError(
+            reason if known else f"this version of jointid does not know the kind '{kind}'"
+        )
     module, _, name = _HOMES[kind].partition(":")
     found: type[KeptResult] = getattr(import_module(module), name)
     return found

@@ -78,43 +78,43 @@ def simulate(
 ) -> Any:
     """Simulate a joint that a controller moves along a trajectory, or a servo or a robot along its logs.
 
-    Dry friction is set-valued at rest: below breakaway the joint does not move at all. The command is held over each
-    control period. The same arguments give bit-identical results.
+    Dry friction is set-valued at rest: below the breakaway torque, the joint does not move at all. The command is
+    held over each control period. The same arguments give bit-identical results.
 
-    With `recordings`, the closed loop of a servo is simulated from their initial states and compared with their
-    positions. Only the reference, the supply and the signal "driven" are taken from the log; without a known position
-    loop, the logged duty replaces the reference. A robot follows its logged torques, in stretches that begin at the
-    logged state; a robot with a `drive` follows the wanted positions through its loop. Both are also compared with the
-    URDF without friction.
+    With `recordings`, the closed loop of a servo is simulated from the recorded initial states and compared with the
+    recorded positions. Only the reference, the supply and the signal "driven" are taken from the log. Without a known
+    position loop, the logged duty replaces the reference. A robot follows its logged torques, in stretches that begin
+    at the logged state. With a `drive`, the robot's position loop follows the logged reference positions. Both
+    simulations are also compared with the URDF without friction.
 
     Parameters
     ----------
     subject : Joint, Estimate, ServoEstimate or RobotEstimate
-        The subject needs a value for each parameter of its model: see `Joint.with_parameters`. If it has a sensor and
-        ``gravity="none"``, its link is behind the sensor. A link without inertia is a point mass. A servo has values of
-        torque constant, resistance, inertia and friction.
+        The subject needs a value for each parameter of its model: see `Joint.with_parameters`. With a sensor and
+        ``gravity="none"``, the link is behind the sensor. A link without inertia is a point mass. A servo needs
+        values of torque constant, resistance, inertia and friction.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
-        Not used for a servo along its logs; this also applies to all parameters below except `step` and `threads`.
+        Controller of the joint. For a servo along its logs, only `recordings`, `step` and `threads` are used.
     trajectory : Trajectory
-        Trajectory of the position; for `OpenLoop`, of the torque.
+        Trajectory of the position; for `OpenLoop`, trajectory of the torque.
     duration : float, optional
-        Duration [s]. Default: the trajectory's.
+        Duration [s]. Default: the duration of the trajectory.
     control_period : float
         Time between commands [s]. Default 0.001.
     sample_period : float, optional
-        Time between recorded samples [s], a whole number of control periods. Default: one. The recorded torque is then
-        the mean of the commands until the next sample.
+        Time between recorded samples [s], a whole number of control periods. Default: one control period. The
+        recorded torque is the mean of the commands until the next sample.
     integration_step : float, optional
         Integration step [s]; the control period is a whole number of steps. Default: half of the control period.
     sensors : Sensors, optional
         Sensors of the joint. Default: exact signals.
     payload : Link or float
-        A payload on the joint in addition to its own link, behind the sensor; a number is a constant
-        torque [N·m] against positive motion. Default 0.
+        Payload behind the sensor, in addition to the joint's own link. A number is a constant torque [N·m] against
+        positive motion. Default 0.
     bristle : Bristle, optional
         Bristle that makes friction dynamic (Dahl, LuGre). Default: static friction.
     position, velocity : float, optional
-        Initial state [rad], [rad/s]. Default: the trajectory's position, at rest.
+        Initial position [rad] and velocity [rad/s]. Default: at rest at the first position of the trajectory.
     seed : int
         Seed of the sensors' noise. Default 0.
     name : str
@@ -123,23 +123,24 @@ def simulate(
     Other Parameters
     ----------------
     recordings : Recording, RobotRecording, or sequence of these
-        Servo, robot: the logs, as for `identify`.
+        Servo or robot: its recordings, as for `identify`.
     step : float
-        Servo, robot: longest integration step [s]. Default 1 ms.
+        Servo or robot: longest integration step [s]. Default 1 ms.
     horizon : float, optional
-        Robot: length of a stretch [s]. Default: 0.5 with logged torques, because errors of an open loop grow without
-        bound; the whole recording with a closed loop. At most the first 20 s of each recording are simulated.
+        Robot: duration of a stretch [s]. Default with logged torques: 0.5, because errors of an open loop grow
+        without bound. Default with a closed loop: the whole recording. At most the first 20 s of each recording are
+        simulated.
     threads : int
-        Servo: number of threads; 0 (default): all. Results do not depend on it.
+        Servo: number of threads. Default 0: all processors. Results do not depend on the number.
 
     Returns
     -------
     SimulatedRecording or Rollout
-        Signals as measured by the sensors, the held torque, and the reference. `truth` has the true parameters, and
-        `truth.signals` the true signals. If the sensors do not measure an exact velocity, it is derived from the
-        position; the velocity that the controller used is in ``truth.signals["control_velocity"]``.
-        ``metadata["saturations"]`` counts the control periods in which the torque limit cut the command. A `Rollout` is
-        the result for a servo or a robot along its logs.
+        Recording with the measured signals, the held torque and the reference. `truth` has the true parameters, and
+        `truth.signals` the true signals. Without a sensor of exact velocity, the velocity is derived from the
+        position. ``truth.signals["control_velocity"]`` is the velocity that the controller used.
+        ``metadata["saturations"]`` counts the control periods in which the torque limit cut the command. A `Rollout`
+        is the result for a servo or a robot along its logs.
 
     Raises
     ------
@@ -222,7 +223,7 @@ def _are_recordings(value: object) -> bool:
 
 
 _REMEDIES: dict[OtherKind, str] = {
-    "robot": "give a jid.Joint with the values of one of its joints",
-    "robot estimate": "give recordings: their logged torques then move the arm",
+    "robot": "give a jid.Joint with the values of one joint of the robot",
+    "robot estimate": "give recordings, so that the logged torques move the arm",
     "joint estimates": "choose one: `found[NAME]`",
 }

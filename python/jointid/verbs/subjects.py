@@ -19,7 +19,7 @@ WORDS: dict[Subject, str] = {
     "joints": "several joints",
     "robot": "a robot",
 }
-_SEVERAL = 'jid.load(path, joints="all") reads one'
+_SEVERAL = 'jid.load(path, joints="all") reads a RobotRecording'
 
 
 def subject_of(verb: str, recordings: object, subject: object) -> Subject:

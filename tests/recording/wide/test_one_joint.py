@@ -126,7 +126,7 @@ def test_a_number_stands_for_a_name_where_all_are_numbered_alike(
 
 def test_a_joint_in_a_file_without_joints(tmp_path: Path) -> None:
     path, _ = written(tmp_path, ["time_s", "position_rad"])
-    with pytest.raises(jid.InputError, match="name no joints"):
+    with pytest.raises(jid.InputError, match="no header names the position of a joint"):
         jid.load(path, joint=1)
 
 
@@ -177,7 +177,7 @@ def test_joints_where_only_a_pattern_names_them(tmp_path: Path) -> None:
     assert jid.load_robot(path, columns=given).names == ("1", "2")
     with pytest.raises(jid.InputError, match=r"2 joints \(1, 2\)"):
         jid.load(path, columns=given)
-    with pytest.raises(jid.InputError, match=r"joints is 'all': the headers name no"):
+    with pytest.raises(jid.InputError, match=r"joints is 'all': no header names the"):
         jid.load_robot(path)
 
 

@@ -27,7 +27,9 @@ def test_a_mapping_of_recordings() -> None:
     whole = robot()
     assert (len(whole), list(whole), whole.samples) == (3, ["a", "b", "joint_3"], 50)
     assert whole["b"] == whole.joint("b") == whole.to_recordings()[1]
-    with pytest.raises(jid.InputError, match="there are a, b, joint_3, which have no common"):
+    with pytest.raises(
+        jid.InputError, match="there are a, b, joint_3; the joints have no common numbering"
+    ):
         whole.joint(3)
     numbered = robot(names=["joint_1", "joint_2", "joint_3"])
     assert numbered.joint(3).name == "joint_3"

@@ -77,7 +77,7 @@ def test_two_arms_are_asked_about(tmp_path: Path) -> None:
         publisher(["left_1", "left_2"], 10_000_000, 100, effort=True),
         publisher(["right_1", "right_2"], 10_000_000, 100, effort=True, late=3_000_000),
     )
-    with pytest.raises(jid.InputError, match="logged at other times") as refused:
+    with pytest.raises(jid.InputError, match="logged at different times") as refused:
         jid.load(path, joints="all")
     proposed = [_joints(each) for each in refused.value.remedy]
     assert proposed == [["left_1", "left_2"], ["right_1", "right_2"]]
@@ -91,7 +91,9 @@ def test_named_joints_are_never_left_out(tmp_path: Path) -> None:
         publisher(ARM, 10_000_000, 100, effort=True),
         publisher(["finger"], 33_000_000, 30, effort=False, late=1_000),
     )
-    with pytest.raises(jid.InputError, match="finger was logged at other times") as refused:
+    with pytest.raises(
+        jid.InputError, match=r"finger and .* were logged at different times"
+    ) as refused:
         jid.load(path, joints=["shoulder", "elbow", "finger"])
     assert _joints(refused.value.remedy[0]) == ["shoulder", "elbow"]
 

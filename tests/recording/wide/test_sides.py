@@ -45,7 +45,7 @@ def test_signals_of_both_sides_need_the_ratio(tmp_path: Path) -> None:
     for load in (lambda: jid.load(path, joint=1), lambda: jid.load_robot(path)):
         with pytest.raises(
             jid.InputError,
-            match=r"position is on the motor side, but the torque on the j.*gear_ratio=\.\.\.",
+            match=r"position on the motor side, torque on the j.*gear_ratio=\.\.\.",
         ):
             load()
 
@@ -59,7 +59,7 @@ def test_the_motors_torque_comes_first_beside_its_position(tmp_path: Path) -> No
 
 def test_a_torque_of_no_side_is_asked_about(tmp_path: Path) -> None:
     path, columns = columns_of(tmp_path, "motor_position", "torque")
-    with pytest.raises(jid.InputError, match="which side of the gear") as caught:
+    with pytest.raises(jid.InputError, match="does not show its side of the gear") as caught:
         jid.load(path, joint=1, gear_ratio=RATIO)
     at_motor, at_joint = remedies(caught.value)
     assert (at_motor, at_joint) == (

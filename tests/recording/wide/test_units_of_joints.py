@@ -36,7 +36,7 @@ def test_a_motors_torque_is_read_and_turned_alike_in_every_unit(
 
 
 def test_a_torque_of_no_side_is_asked_about_in_every_unit(tmp_path: Path) -> None:
-    with pytest.raises(jid.InputError, match="does not say on which side of the gear it is"):
+    with pytest.raises(jid.InputError, match="does not show its side of the gear"):
         jid.load_robot(log(tmp_path / "a.csv", "torque_{}_mNm"))
 
 

@@ -33,9 +33,9 @@ class Bench:
     Attributes
     ----------
     joint : Joint
-        Its parameter values are the controller's initial assumptions.
+        Joint on the bench. Its parameter values are the controller's initial assumptions.
     controller : AdaptiveRobust, CompensatedPid, LugreObserver, …
-        Controller of the session; it has the joint's values if it uses estimates.
+        Controller of the session. If it uses estimates, it has the joint's parameter values.
     trajectory : Trajectory
     drive : object
         Options of the drive, as its drive type defines them.
@@ -46,10 +46,10 @@ class Bench:
     emulation : Emulation or None
         The joint that an emulated drive moves.
     drive_type : str
-        Name of the drive's type, see `DriveType`. Default: the type of a joint file without a name.
+        Name of the drive's type, see `DriveType`. Default: the type for a joint file that names no type.
     first_motion : FirstMotionOptions
     designed_for : DesignedFor or None
-        Joint of the designed trajectory, if its file names one. Default None.
+        Joint, controller and period that the trajectory was designed for, if its file states them. Default None.
     """
 
     joint: Joint
@@ -67,7 +67,7 @@ class Bench:
 
     @property
     def motion_warning(self) -> str:
-        """Difference from the bench of the designed motion; empty without a difference."""
+        """Differences from the bench that the motion was designed for; empty if there are none."""
         if self.designed_for is None:
             return ""
         return self.designed_for.warning(
@@ -81,12 +81,12 @@ class Bench:
 
     @classmethod
     def load(cls, path: str | Path) -> Bench:
-        """Read a joint file with a table `[session]`; `examples/hardware/joint.toml` explains it.
+        """Read a joint file with a table `[session]`. `examples/hardware/joint.toml` is an example with comments.
 
         Raises
         ------
         InputError
-            A value that cannot be used; the error names file, table and key.
+            A value cannot be used. The error names file, table and key.
 
         Examples
         --------
@@ -100,18 +100,18 @@ class Bench:
 
 
 class DriveType(DriveFormat):
-    """Adapter of a make of drive. A new drive needs a subclass and an entry point.
+    """Adapter for one type of drive. A new type needs a subclass and an entry point.
 
     A subclass must define `options`, `open` and `emulate`; `tests/third_party_drive` is an example.
 
     Attributes
     ----------
     tables : tuple of str
-        More tables under `[session]` that `options` reads, in addition to `[session.drive]`. Default: none.
+        Tables under `[session]` that `options` reads in addition to `[session.drive]`. Default: none.
 
     Examples
     --------
-    In the `pyproject.toml` of the package that brings the drive::
+    In the `pyproject.toml` of the package with the subclass::
 
         [project.entry-points."jointid.drives"]
         acme = "acme_drive:AcmeType"
@@ -128,7 +128,7 @@ class DriveType(DriveFormat):
         raise NotImplementedError
 
     def address(self, bench: Bench) -> str:
-        """Return the address of the real drive, shown before a joint moves. Default: its options."""
+        """Return the address of the real drive, which is shown before a joint moves. Default: the drive's options."""
         return str(bench.drive)
 
     def emulate(self, bench: Bench, seed: int) -> AbstractContextManager[Drive]:
@@ -148,10 +148,10 @@ class DriveType(DriveFormat):
         raise NotImplementedError
 
     def devices(self, bench: Bench, seed: int) -> tuple[Device, ...]:
-        """Return emulated devices for a CAN bus that other programs use; default: raises InputError."""
+        """Return the emulated devices for a CAN bus that other programs use. Default: raises InputError."""
         del seed
         raise InputError(
-            "this type of drive cannot be emulated on a CAN bus",
+            "jointid cannot emulate this type of drive on a CAN bus",
             argument="type",
             value=bench.drive_type,
             place="[session.drive]",
@@ -164,7 +164,7 @@ def drive_type(name: str) -> DriveType:
     Raises
     ------
     InputError
-        Not text, an unknown type, a type of several packages, a package that registers a built-in name, or an entry
-        point that cannot be used; `__cause__` is the package's error.
+        The name is not a text, or the type is unknown. Several packages register the type, or a package registers a
+        built-in name. The entry point cannot be used; `__cause__` is then the package's error.
     """
     return adapter_of(name, DriveType)

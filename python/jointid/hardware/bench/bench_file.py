@@ -67,7 +67,7 @@ def bench_fields(path: str | Path, *, with_motion: bool = True) -> dict[str, Any
     joint = joint_from_document(document, source, Joint)
     if "session" not in document:
         raise InputError(
-            "there is no table [session], which describes drive and motion; docs/hardware.md shows one",
+            "the file has no table [session] for drive and motion; docs/hardware.md has an example",
             place=source,
         )
     session = Table(document["session"], "session", source)
@@ -79,10 +79,12 @@ def bench_fields(path: str | Path, *, with_motion: bool = True) -> dict[str, Any
             session.refuse(key, f"unknown table; {suggestion(key, tables)}")
     for key, meaning in _REQUIRED.items():
         if key not in session.entries and (with_motion or key != "trajectory"):
-            raise InputError(f"there is no table [session.{key}], {meaning}", place=source)
+            raise InputError(f"the file has no table [session.{key}], {meaning}", place=source)
     if "gear_ratio" not in document.get("drive", {}):
         raise InputError(
-            "missing; 1 where there is no gear", argument="gear_ratio", place=f"{source}: [drive]"
+            "missing; state 1 for a joint without a gear",
+            argument="gear_ratio",
+            place=f"{source}: [drive]",
         )
     bus = session.table("bus").make(BusOptions)
     motion = Motion(trajectory=Trajectory.thesis())
@@ -122,10 +124,10 @@ def _motion(table: Table, folder: Path) -> Motion:
         return Motion(trajectory=_trajectory(table))
     name = table.entries["file"]
     if not isinstance(name, str):
-        table.refuse("file", "the name of a motion's file is expected", name)
+        table.refuse("file", "the name of a motion file is expected", name)
     for other in table.entries:
         if other != "file":
-            table.refuse(other, "the file holds the whole motion; remove this key")
+            table.refuse(other, "the motion file already defines the whole motion; remove this key")
     try:
         return load_motion(folder / name)
     except InputError as error:

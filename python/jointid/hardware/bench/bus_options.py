@@ -9,7 +9,7 @@ from jointid.hardware.can.bus import check_bitrates, check_interface
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BusOptions:
-    """A CAN bus, with python-can's names.
+    """Options of a CAN bus, with the names of python-can.
 
     Attributes
     ----------
@@ -18,7 +18,7 @@ class BusOptions:
     channel : str
         Name of the bus: "can0", "PCAN_USBBUS1", … Default "can0".
     bitrate : int
-        Bit rate [bit/s]; for socketcan `ip link` sets it. Default 500 000.
+        Bit rate [bit/s]; for socketcan, set it with `ip link`. Default 500 000.
     fd : bool
         Whether to send and receive CAN FD frames. Default false.
     data_bitrate : int, optional

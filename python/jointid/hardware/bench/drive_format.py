@@ -21,13 +21,14 @@ class DriveFormat:
     tables: tuple[str, ...] = ()
 
     def options(self, session: Table, bus: BusOptions) -> Any:
-        """Return the drive's options, a frozen dataclass, from the joint file.
+        """Return the drive's options from the joint file, as a frozen dataclass.
 
         Parameters
         ----------
         session : Table
-            The table `[session]`; `session.table("drive").without("type").make(Options)` reads the fields of
-            a dataclass from `[session.drive]`, with types, unknown keys and places checked.
+            The table `[session]`. `session.table("drive").without("type").make(Options)` reads the fields of a
+            dataclass from `[session.drive]`. It checks types and unknown keys, and its errors name the place in the
+            file.
         bus : BusOptions
             Options from `[session.bus]`.
 
@@ -47,10 +48,10 @@ class DriveFormat:
         return None
 
     def metadata(self, options: Any) -> Mapping[str, Any]:
-        """Return the options in JSON types. Each recording keeps them as "drive_options".
+        """Return the options in JSON types. Each recording keeps these options as "drive_options".
 
-        A drive that is opened by this type returns ``{"drive_type": name, "drive_options": …}`` from its own
-        `metadata`. Default: the fields of the dataclass.
+        The method `metadata` of an opened drive returns ``{"drive_type": name, "drive_options": …}``. Default: the
+        fields of the dataclass.
         """
         from jointid.hardware.session.metadata import plain
 
@@ -58,14 +59,14 @@ class DriveFormat:
         return found
 
     def wiring(self, options: Any) -> Mapping[str, Any]:
-        """Return the options that set signs and scales. A change of one voids the bench certificate.
+        """Return the options that set signs and scales. If one of them changes, the bench certificate is not valid.
 
-        Default: all of them.
+        Default: all options.
         """
         return self.metadata(options)
 
     def recorded_options(self, metadata: Mapping[str, Any]) -> Any:
-        """Return the options that `metadata` wrote, or the default options if a recording has none.
+        """Return the options in a recording's metadata, or the default options if it has none.
 
         Default: raises InputError, so that a frame log cannot be replayed.
 
@@ -91,11 +92,11 @@ class DriveFormat:
         Parameters
         ----------
         frames : iterable of LoggedFrame
-            Frames that the drive gave to its `tap`. Logs of other programs also contain frames of other nodes.
+            Frames that the drive passed to its `tap`. Logs of other programs also contain frames of other nodes.
         joint : Joint
         options : object
         identity : mapping
-            Result of `Drive.identity` in that session; empty if it is not known.
+            Result of `Drive.identity` in the logged session; empty if it is not known.
 
         Raises
         ------
@@ -112,5 +113,7 @@ class DriveFormat:
 
     def _no_replay(self) -> InputError:
         return InputError(
-            "this type of drive decodes no frame log", argument="drive", value=type(self).__name__
+            "this type of drive cannot decode a frame log",
+            argument="drive",
+            value=type(self).__name__,
         )

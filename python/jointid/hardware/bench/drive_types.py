@@ -33,13 +33,17 @@ def adapter_of(name: str, kind: type[T]) -> T:
     found: tuple[EntryPoint, ...] = tuple(entry_points(group=ENTRY_POINTS, name=name))
     if name in _BUILT_IN:
         if found:
-            raise _refused(name, f"registered by {_origin(found[0])}, but built in; rename it")
+            raise _refused(
+                name,
+                f"{_origin(found[0])} registers this name, but jointid has a built-in type of this name; rename the "
+                "registered type",
+            )
         module, _, built_in = _BUILT_IN[name].partition(":")
         made: T = getattr(import_module(module), built_in)()
         return made
     if not found:
         names = suggestion(name, drive_type_names())
-        raise _refused(name, f"{names}; a package registers more of them as entry points")
+        raise _refused(name, f"{names}; other packages can register more types as entry points")
     if len({entry.value for entry in found}) > 1:
         values = ", ".join(sorted(entry.value for entry in found))
         raise _refused(name, f"registered by several packages: {values}")
@@ -60,7 +64,7 @@ def _loaded(name: str, entry: EntryPoint, kind: type[T]) -> T:
     if not isinstance(adapter, kind):
         raise _refused(
             name,
-            f"the entry point {entry.value} of {_origin(entry)} is not a DriveType but a {type(adapter).__name__}",
+            f"the entry point {entry.value} of {_origin(entry)} is a {type(adapter).__name__}, not a DriveType",
         )
     return adapter
 

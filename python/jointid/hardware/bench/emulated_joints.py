@@ -19,7 +19,7 @@ def true_joint(bench: Bench, *, gear_ratio: float | None = None) -> Joint:
     ----------
     bench : Bench
     gear_ratio : float, optional
-        True gear ratio, if the joint file's is wrong. Default: the joint file's.
+        True gear ratio, if the joint file states a wrong one. Default: the gear ratio in the joint file.
 
     Raises
     ------
@@ -46,9 +46,9 @@ def emulated_joint(
     seed : int
         Seed of the torque sensor's noise. Default 0.
     gear_ratio : float, optional
-        True gear ratio, if the joint file's is wrong. Default: the joint file's.
+        True gear ratio, if the joint file states a wrong one. Default: the gear ratio in the joint file.
     sensor_sign : float
-        -1 for a torque sensor with inverted wiring. Default 1.
+        Sign of the torque sensor's gain: -1 for a sensor with inverted wiring. Default 1.
     unlimited : bool
         Whether the true torque may exceed the joint file's torque limit, as with a drive that limits only its current.
         Default False.
@@ -56,7 +56,7 @@ def emulated_joint(
     Raises
     ------
     InputError
-        The bench does not describe an emulated joint, or not completely.
+        The bench does not describe an emulated joint completely.
     """
     joint, emulation = true_joint(bench, gear_ratio=gear_ratio), _emulation(bench)
     gain = joint.parameters.get("sensor_gain")
@@ -76,7 +76,5 @@ def emulated_joint(
 
 def _emulation(bench: Bench) -> Emulation:
     if bench.emulation is None:
-        raise InputError(
-            "the joint file has no table [session.emulated], which describes the emulated joint"
-        )
+        raise InputError("the joint file has no table [session.emulated] for the emulated joint")
     return bench.emulation

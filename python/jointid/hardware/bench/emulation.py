@@ -14,21 +14,21 @@ from jointid.joint.joint import Joint
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Emulation:
-    """True values of an emulated bench; the session does not use them.
+    """True values of an emulated bench. The session does not use them.
 
     Attributes
     ----------
     truth : mapping of str to float
         True parameter values by name, in SI units. The gear has torque ripple only with entries such as
-        "ripple_sin_2" and "ripple_cos_2", and only in orders of the joint's model.
+        "ripple_sin_2" and "ripple_cos_2". The joint's model must have these orders of ripple.
     sensors : Sensors
-        Noise, ripple and other errors of the torque sensor. Encoder and converter belong to the drive.
+        Noise, ripple and other errors of the torque sensor. Encoder and converter are options of the drive.
     integration_step : float
         Longest step of the joint's simulation [s].
     position : float
         Angle of the joint at the start [rad].
     drive : object, optional
-        Options of the emulated drive, as its drive type defines them. Default: the type's default.
+        Options of the emulated drive, as its drive type defines them. Default: the default options of the drive type.
     """
 
     truth: Mapping[str, float]

@@ -18,44 +18,44 @@ class FirstMotionOptions:
     Attributes
     ----------
     largest_torque : float, optional
-        Largest torque while nothing moves, by the joint file's constants [N·m]. Default: five times the
-        breakaway torque in the joint file, or twice without a torque sensor to watch; never more than the session's
-        torque limit. Required without a breakaway torque and without a sensor to watch.
+        Largest torque before the joint moves [N·m], computed with the joint file's constants. Default: five times the
+        breakaway torque in the joint file, or twice this torque without a watched torque sensor. The session's torque
+        limit also applies. This key is required without a breakaway torque and without a watched sensor.
     compare_friction : bool
-        Whether to compare the measured breakaway with the joint file's friction, which must be right within a factor of
-        1.5. Set false if it is only a guess. Default true.
+        Whether to compare the measured breakaway torque with the joint file's friction. The stated friction must then
+        be correct within a factor of 1.5. Set false if the stated friction is only a guess. Default true.
     watch_sensor : bool
-        Whether to stop if the torque sensor's reading changes at a constant encoder count. Set false for a sensor that
-        shows the motor's torque. Default true.
+        Whether to stop if the torque sensor's reading changes while the encoder count is constant. Set false for a
+        sensor that shows the motor's torque. Default true.
     hand_turn : float, optional
-        Time to wait, motor off, until somebody turns the joint by hand by 50 counts [s]. Default: no wait; without
-        a sensor to watch, an encoder that does not count then shows only at the largest torque.
+        Longest wait with the motor off, until somebody turns the joint by hand by 50 counts [s]. Default: no wait.
+        Without a watched sensor, an encoder that does not count is then found only at the largest torque.
     counts : int, optional
-        Encoder counts that count as motion. Default: 5; fewer, but at least 2, if these and `more_counts` are
-        more than 0.1° together.
+        Number of encoder counts that show a motion. Default: 5, or fewer (at least 2) if `counts` and `more_counts`
+        would exceed 0.1° together.
     more_counts : int, optional
-        Counts that must follow while the torque is held; without them the gear only wound up. Default: 10; fewer
-        in the same case.
+        Number of further counts that must follow while the torque is held. Without these counts, the gear has only
+        wound up. Default: 10, or fewer (at least 2) under the same condition as for `counts`.
     growth_time : float
-        Time in which the torque grows by a factor of e [s]. The growth is exponential, so that a weak joint is
-        approached as carefully as a strong one. Default 2.
+        Time in which the torque grows by a factor of e [s]. Exponential growth is equally careful for joints with
+        small and large breakaway torque. Default 2.
     travel : float, optional
-        Largest distance from the start, by the joint file's gear ratio [rad]; beyond it the motor goes off.
-        Default: the larger of 0.4° and 40 encoder counts.
+        Largest distance from the start [rad], computed with the joint file's gear ratio. Beyond this distance, the
+        motor is switched off. Default: the larger of 0.4° and 40 encoder counts.
     velocity : float
-        Highest speed [rad/s]; beyond it the motor goes off. Default 0.5.
+        Highest speed [rad/s]. Above this speed, the motor is switched off. Default 0.5.
     still_time : float
-        Time at rest before the motion, with the motor off and again with it on [s]. Default 0.5.
+        Time at rest before the motion [s], first with the motor off, then again with the motor on. Default 0.5.
     moves : tuple of float, optional
-        Amplitudes of the small motions under control, in order [rad]. Default: 0.1°, 0.2° and 0.3°, or a
-        third, two thirds and all of 20 encoder counts if that is more.
+        Amplitudes of the small controlled motions, in order [rad]. Default: 0.1°, 0.2° and 0.3°. If 20 encoder counts
+        exceed 0.3°: a third, two thirds and all of 20 counts.
     longest : float
         Longest time with the motor on [s]. Default 55.
 
     Raises
     ------
     InputError
-        A value of the wrong kind or outside its range.
+        A value has the wrong type or is outside its range.
     """
 
     largest_torque: float | None = None

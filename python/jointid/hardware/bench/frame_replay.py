@@ -41,43 +41,45 @@ def replay(
 ) -> Recording:
     """Decode the frames of a session into a recording.
 
-    The decoder is that of the session: with the session's options, the result equals the session's recording to
-    within the log's rounding (1 ns). Use other options to correct a sensor's scale or a position offset.
+    The frames are decoded as in the session. With the session's options, the result equals the session's recording,
+    except for the log's rounding of times (1 ns). Use other options to correct a sensor's scale or a position offset.
 
     Parameters
     ----------
     log : path-like
-        The session's ``.log``, or a log of candump, ``.asc`` or ``.blf``; from before the first motion until the end.
+        Name of the session's ``.log``, of a log of candump, or of an ``.asc`` or ``.blf`` file. The log begins before
+        the first motion and contains the complete session.
     joint : Joint
-        Its torque constant is needed if the commands are currents.
+        Joint of the session. Its torque constant is needed if the commands are currents.
     options : object, optional
-        Options of the drive, as its drive type defines them. Default: those in the recording.
+        Options of the drive, as its drive type defines them. Default: the options in the recording.
     drive : str, optional
-        Name of the drive's type. Default: the recording's; without one, the default type of a joint file.
+        Name of the drive's type. Default: the type in the recording; without a recording, the default type of a joint
+        file.
     recording : path-like or Recording, optional
-        The session's recording, complete or truncated: it has the period, the reference, the cycles of the run, and
-        the kind of time stamps. Default: the ``.csv`` with the log's name, if it exists.
+        The session's recording, complete or truncated. It contains the period, the reference, the cycles of the run,
+        and the kind of time stamps. Default: the ``.csv`` with the log's name, if it exists.
     period : float, optional
         Period of the session [s]. Default: the recording's.
     cycles_before : int, optional
-        Control cycles before the run. Default: found by comparison with the recording's positions; without a
-        recording 0, and the result includes the motion to the start.
+        Number of control cycles before the run. Default: the number that a comparison with the recording's positions
+        gives. Without a recording it is 0, and the result includes the motion to the start.
     stamped : bool, optional
-        Whether frames have arrival times in microseconds, as with SocketCAN. Default: as in the recording; without
-        one True.
+        Whether frames have arrival times in microseconds, as with SocketCAN. Default: as in the recording; True
+        without a recording.
     trajectory : Trajectory, optional
-        Trajectory of the reference. Default: the recording's reference, which also limits the number of samples.
+        Trajectory of the reference. Default: the recording's reference; it also limits the number of samples.
 
     Returns
     -------
     Recording
-        time, position and torque; sensor, reference and current if known.
+        Recording of time, position and torque, and of sensor, reference and current if known.
 
     Raises
     ------
     InputError
-        The log cannot be read; frames are missing or differ from the recording's positions; the period is not known;
-        or the drive's type is not installed.
+        The log cannot be read, or frames are missing. The frames differ from the recording's positions. The period is
+        not known, or the drive's type is not installed.
 
     Examples
     --------
@@ -156,7 +158,7 @@ def _session(file: Path, recording: str | os.PathLike[str] | Recording | None) -
 def _period(period: Any) -> float:
     if not isinstance(period, int | float) or not 0.0 < period < math.inf:
         raise InputError(
-            "the session's period is not known; pass it, or the session's recording",
+            "the session's period is not known; pass the period, or the session's recording",
             argument="period",
             value=period,
         )
@@ -167,12 +169,12 @@ def _check_count(found: int, before: int, session: Recording | None) -> None:
     """Check that all cycles of the run are in the log."""
     if session is not None and found < len(session.time):
         raise InputError(
-            f"{found} cycles of the run, the recording has {len(session.time)}; frames are missing "
-            "from the log"
+            f"the log has {found} cycles of the run, but the recording has {len(session.time)}; frames "
+            "are missing from the log"
         )
     if found < _LEAST:
         raise InputError(
-            f"{max(0, found)} cycles after the first {before}; at least {_LEAST} are expected"
+            f"the log has {max(0, found)} cycles after the first {before}; at least {_LEAST} are expected"
         )
 
 
@@ -191,7 +193,7 @@ def _late(
     if (recorded < 0.0).any():
         row = int(np.argmax(recorded < 0.0))
         raise InputError(
-            f"late is {recorded[row]:g} in row {row} of the recording; 0 or more is expected"
+            f"signal late is {recorded[row]:g} in row {row} of the recording; 0 or more is expected"
         )
     if late[:known].sum() > np.floor(recorded).sum():
         raise InputError(next(cycle.lost for cycle in every[before:] if cycle.lost))

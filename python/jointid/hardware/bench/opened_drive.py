@@ -29,12 +29,12 @@ def open_drive(
     Returns
     -------
     context manager of Drive
-        The bus is closed at its end.
+        Context manager that yields the drive and closes its bus at the end.
 
     Raises
     ------
     InputError
-        Not a Bench; the bus cannot be opened, or the bench does not describe an emulated joint.
+        `bench` is not a Bench, the bus cannot be opened, or the bench does not describe an emulated joint.
 
     Examples
     --------
@@ -61,7 +61,8 @@ def emulated_devices(bench: Bench, seed: int = 0) -> tuple[Device, ...]:
     Raises
     ------
     InputError
-        Not a Bench; the bench does not describe an emulated joint, or its drive type has no emulation on a CAN bus.
+        `bench` is not a Bench, it does not describe an emulated joint, or its drive type has no emulation on a CAN
+        bus.
     """
     require_kind("bench", bench, Bench)
     return drive_type(bench.drive_type).devices(bench, seed)

@@ -67,9 +67,10 @@ class LoggedPositions:
         found = self._position[self.kept(before)[: len(session.position)]]
         row = int(np.argmax(~(np.abs(found - session.position) <= _tolerance(session.position))))
         return InputError(
-            f"row {row} of the recording has the position {session.position[row]:.9g} rad, but the frames have "
-            f"{found[row]:.9g} rad, whichever cycle is taken as the first; is it the log of this session and joint?",
-            remedy=f"cycles_before={before} takes the frames as they are",
+            f"no first cycle of the log fits the recording: row {row} has the position "
+            f"{session.position[row]:.9g} rad, but the frames have {found[row]:.9g} rad; is "
+            "this the log of this session and joint?",
+            remedy=f"state cycles_before={before} to use the frames without this comparison",
         )
 
 

@@ -24,7 +24,7 @@ Made = TypeVar("Made")
 
 
 class Table:
-    """Table of a joint file, with its place for error messages.
+    """Table of a joint file, with its name and its file for error messages.
 
     Parameters
     ----------
@@ -60,11 +60,11 @@ class Table:
         return f"{self.source}: [{self.name}]"
 
     def table(self, name: str) -> Table:
-        """Return an inner table; an empty one if there is none."""
+        """Return an inner table, or an empty table if there is none."""
         return Table(self.entries.get(name, {}), f"{self.name}.{name}", self.source)
 
     def without(self, *names: str) -> Table:
-        """Return the table without some keys."""
+        """Return the table without the keys in `names`."""
         left = {name: value for name, value in self.entries.items() if name not in names}
         return Table(left, self.name, self.source)
 
@@ -84,12 +84,12 @@ class Table:
         ----------
         kind : dataclass
         **fixed
-            Fields that are not keys of the table.
+            Values of fields that are not keys of the table.
 
         Raises
         ------
         InputError
-            An unknown key, a value of the wrong type, or a value that the dataclass refuses.
+            A key is unknown, a value has the wrong type, or the dataclass refuses a value.
         """
         known = {name: type_ for name, type_ in types_of(kind).items() if name not in fixed}
         for item in fields(kind):  # type: ignore[arg-type]
@@ -99,7 +99,7 @@ class Table:
         return self.call(kind, known, **fixed)
 
     def make_core(self, kind: Callable[..., Made], unknown: Collection[str] = ()) -> Made:
-        """Return an object of the core, e.g. a controller, from keys that are its attributes.
+        """Return an object of the core, e.g. a controller, from keys with the names of its attributes.
 
         Parameters
         ----------
@@ -113,13 +113,13 @@ class Table:
         return self.call(kind, known)
 
     def call(self, kind: Callable[..., Made], known: Mapping[str, str], **fixed: Any) -> Made:
-        """Return `kind` called with the entries.
+        """Return the result of a call of `kind` with the entries.
 
         Parameters
         ----------
         kind : callable
         known : mapping of str to str
-            Keys and their types; "" for a value that `kind` checks itself.
+            Key → type of its value. The type is "" for a value that `kind` checks.
         **fixed
             Further arguments.
         """

@@ -75,11 +75,11 @@ def _plain(part: bytes, room: Room) -> bytes:
     if method == _STORED:
         return part[_HEAD:]
     if method != _ZLIB:
-        raise InputError(f"a part is packed by the method {method}, which is not read")
+        raise InputError(f"a part has the compression method {method}, which jointid cannot read")
     plain = zlib.decompressobj().decompress(part[_HEAD:], room.left + 1)
     room.take(len(plain))
     if len(plain) > _MOST:
-        raise InputError(f"a part is larger than {_MOST} bytes when it is unpacked")
+        raise InputError(f"an unpacked part is larger than {_MOST} bytes")
     return plain
 
 
@@ -99,9 +99,9 @@ def _behind_objects(content: bytes) -> bytes | None:
             break
         size = _OBJECT.unpack_from(content, found)[3]
         if size < _OBJECT.size:
-            raise InputError(f"an object has {size} bytes, less than its header")
+            raise InputError(f"an object has {size} bytes, fewer than its header needs")
         if size > _LARGEST:  # it would be joined again for each container
-            raise InputError(f"an object has {size} bytes, more than {_LARGEST}")
+            raise InputError(f"an object has {size} bytes, more than the limit of {_LARGEST}")
         if found + size > len(content):
             break
         place = found + size

@@ -34,24 +34,24 @@ def open_bus(
 ) -> Iterator[can.BusABC]:
     """Open a CAN bus, and shut it down at the end.
 
-    With SocketCAN the kernel filters by `identifiers`, because its queue holds about 280 frames and drops the rest
-    without an error. On other interfaces python-can would filter in Python and also drop error frames, so the drive
-    filters there.
+    With SocketCAN, the kernel filters frames by `identifiers`. The kernel's queue holds about 280 frames and drops
+    further frames without an error. On other interfaces, python-can would filter in Python and also drop error
+    frames. There, the drive filters the frames.
 
     Parameters
     ----------
     interface, channel : str
         Names in python-can: "socketcan" and "can0", "pcan" and "PCAN_USBBUS1", "virtual", …
     bitrate : int
-        Bit rate [bit/s]; for SocketCAN, set it with the interface (`ip link`). Default 500 000.
+        Bit rate [bit/s]. For SocketCAN, set it with `ip link`. Default 500 000.
     identifiers : iterable of int, optional
         Identifiers of the frames to receive. Default: all frames.
     extended : bool
-        Whether all of these identifiers have 29 bits. Default False: those up to 7FFh have 11.
+        Whether all `identifiers` have 29 bits. Default False: identifiers up to 7FFh have 11 bits.
     fd : bool
         Whether to allow CAN FD frames. Default False.
     data_bitrate : int, optional
-        Bit rate of the data of CAN FD frames [bit/s]; for SocketCAN see `bitrate`. Default: `bitrate`.
+        Bit rate of the data in CAN FD frames [bit/s]. For SocketCAN, set it with `ip link`. Default: `bitrate`.
 
     Yields
     ------
@@ -89,8 +89,8 @@ def check_interface(interface: str) -> None:
     """
     if interface == "emulated":
         reason = (
-            "python-can has no such interface: an emulated bench is an EmulatedBus, or an EmulatorThread "
-            "on the interface 'virtual'"
+            "python-can has no such interface; for an emulated bench use an EmulatedBus, or an "
+            "EmulatorThread on the interface 'virtual'"
         )
         raise InputError(reason, argument="interface", value=interface)
     try:
@@ -116,14 +116,14 @@ def check_bitrates(bitrate: int, *, fd: bool, data_bitrate: int | None) -> None:
         return
     if not fd:
         raise InputError(
-            "classic CAN has no separate bit rate for the data",
+            "classic CAN (fd = false) has no data bit rate",
             argument="data_bitrate",
             value=data_bitrate,
-            remedy="fd = true opens the bus for CAN FD",
+            remedy="state fd = true for CAN FD",
         )
     if not bitrate <= data_bitrate <= _FASTEST:
         raise InputError(
-            f"a value from bitrate, {bitrate}, to {_FASTEST} bit/s is expected",
+            f"a value from {bitrate} (bitrate) to {_FASTEST} bit/s is expected",
             argument="data_bitrate",
             value=data_bitrate,
         )
@@ -220,10 +220,10 @@ def _check_network(channel: str, bitrate: int, data_bitrate: int | None) -> None
         controller = (_NETWORKS / channel / "device").exists()
         other = f"{down} && {up}" if controller else f"sudo ip link set {channel} mtu {_FD_SIZE}"
         raise InputError(
-            "the network carries no frames of CAN FD",
+            "CAN FD is not enabled on this network",
             argument="channel",
             value=channel,
-            remedy=f"enable them with `{other}`",
+            remedy=f"enable CAN FD with `{other}`",
         )
 
 
@@ -232,9 +232,9 @@ def _reason(error: Exception) -> str:
     if "msgpack" in str(error):
         return "python-can needs msgpack for this interface; pip install msgpack"
     if code == errno.EAFNOSUPPORT:
-        return "the kernel has no CAN (`sudo modprobe can_raw` loads it where it is available)"
+        return "the kernel has no CAN (if available, `sudo modprobe can_raw` loads the module)"
     if code == errno.ENODEV:
         return "there is no such channel; `ip link` lists the networks"
     if code in (errno.EACCES, errno.EPERM):
-        return "not permitted; is the user in the group that may use the device?"
+        return "access denied; is your user in the group of the device?"
     return f"it cannot be opened: {' '.join(str(error).split()) or type(error).__name__}"

@@ -18,7 +18,7 @@ _ABORTS = {
     0x06070010: "the data has another length",
     0x06090011: "the sub-index does not exist",
     0x06090030: "the value is out of range",
-    0x08000022: "not in this state of the device",
+    0x08000022: "the request is not possible in this state of the device",
 }
 
 
@@ -89,7 +89,7 @@ class SdoRequest:
             The frame is not an expedited request.
         """
         if len(payload) != 8:
-            raise InputError(f"an SDO request of {len(payload)} bytes; 8 are expected")
+            raise InputError(f"an SDO request has {len(payload)} bytes; 8 are expected")
         index, subindex = struct.unpack_from("<HB", payload, 1)
         if payload[0] == 0x40:
             return cls(index=index, subindex=subindex)
@@ -98,7 +98,7 @@ class SdoRequest:
             number = int.from_bytes(payload[4 : 4 + size], "little")
             return cls(index=index, subindex=subindex, value=number, size=size)
         raise InputError(
-            f"an SDO request that begins with {payload[0]:02X}; expedited ones are expected"
+            f"an SDO request begins with {payload[0]:02X}; an expedited request is expected"
         )
 
 

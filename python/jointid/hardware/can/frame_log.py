@@ -34,7 +34,7 @@ class LoggedFrame(NamedTuple):
     fd : bool
         Whether this is a CAN FD frame. Default False.
     sent : bool
-        Whether the host sent it, if the log says so. Default False.
+        Whether the host sent the frame, if the log shows this. Default False.
     """
 
     time: float
@@ -64,7 +64,7 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
     """
     if path.suffix.lower() not in ENDINGS:
         raise InputError(
-            f"the name of a frame log ends in {', '.join(ENDINGS)}",
+            f"the name of a frame log must end in {', '.join(ENDINGS)}",
             argument="log",
             value=path.name,
         )
@@ -99,14 +99,14 @@ def logged_frames(path: Path) -> Iterator[LoggedFrame]:
         raise InputError(f"the file cannot be read ({error.strerror})") from None
     except Exception as error:  # each reader of python-can raises its own errors
         raise InputError(
-            f"the data after frame {number} are not a frame ({reason_of(error)})"
+            f"the data after frame {number} do not form a frame ({reason_of(error)})"
         ) from error
 
 
 def _problem(message: can.Message) -> str:
     """Return the reason why a message is not a valid frame; python-can's readers do not check this."""
     if not math.isfinite(message.timestamp):
-        return "has a stamp that is not a number"
+        return "has a time stamp that is not a finite number"
     highest = _HIGHEST_EXTENDED if message.is_extended_id else _HIGHEST
     if not 0 <= message.arbitration_id <= highest:
         return f"has the identifier {message.arbitration_id:X}h, above {highest:X}h"

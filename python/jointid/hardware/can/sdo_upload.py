@@ -39,18 +39,20 @@ def upload(exchange: Callable[[bytes], bytes], index: int, subindex: int) -> byt
     for _ in range(_MOST_SEGMENTS):
         answer = _answer(exchange, bytes((0x60 | toggle, *bytes(7))), index)
         if answer[0] & 0xE0 or answer[0] & _TOGGLE != toggle:
-            raise InputError(f"a segment of object {index:04X}h begins with {answer[0]:02X}")
+            raise InputError(
+                f"a segment of object {index:04X}h begins with an invalid byte, {answer[0]:02X}"
+            )
         found += answer[1 : 8 - (answer[0] >> 1 & 0x7)]
         if answer[0] & _LAST:
             return found
         toggle ^= _TOGGLE
-    raise InputError(f"object {index:04X}h does not end")
+    raise InputError(f"the last segment of object {index:04X}h is missing")
 
 
 def _answer(exchange: Callable[[bytes], bytes], request: bytes, index: int) -> bytes:
     answer = exchange(request)
     if len(answer) != 8:
-        raise InputError(f"an SDO answer of {len(answer)} bytes; 8 are expected")
+        raise InputError(f"an SDO answer has {len(answer)} bytes; 8 are expected")
     if answer[0] == _ABORTED:
         place, subindex, code = struct.unpack("<HBI", answer[1:])
         raise SdoAbortError(place or index, subindex, code)

@@ -68,7 +68,7 @@ class ElmoDrive:
     ) -> None:
         if joint.torque_constant is None:
             raise InputError(
-                "missing, so no torque can be commanded; state it under [drive] of the joint file",
+                "missing, so no torque can be commanded; state torque_constant under [drive] of the joint file",
                 argument="torque_constant",
             )
         self.joint = joint
@@ -156,8 +156,8 @@ class ElmoDrive:
         if period > CYCLES * self.options.heartbeat:
             raise DriveFaultError(
                 "drive_fault",
-                f"a period of {1e3 * period:g} ms is too long: each cycle sends the heartbeat that the drive expects "
-                f"every {1e3 * self.options.heartbeat:g} ms; at most a third of that is expected",
+                f"a period of {1e3 * period:g} ms is too long: each cycle sends the heartbeat, and the drive expects "
+                f"one every {1e3 * self.options.heartbeat:g} ms; the period must be at most a third of this time",
             )
         self._period, self._cycle = period, 0
         self._found_off = link.up = False
@@ -179,7 +179,7 @@ class ElmoDrive:
             lambda: link.alone.booted,
             _BOOT,
             f"no boot-up message from node {node}",
-            advice="; check that the drive is on, and that this is its node",
+            advice="; check that the drive is on, and that its node number is right",
         )
         self._described = registers.identity(link)
         self._identity |= {each.meaning: each.value for each in self._described}
@@ -230,7 +230,8 @@ class ElmoDrive:
         if end - asked < _LEAST * timeout:
             raise DriveFaultError(
                 "stale_position",
-                f"the answer to the last SYNC was late, so none of the {1e3 * timeout:g} ms is left for the next",
+                f"the answer to the last SYNC was late; none of the {1e3 * timeout:g} ms is left to wait for the "
+                "next answer",
                 measured=asked - end + timeout,
                 allowed=timeout,
             )
@@ -350,8 +351,7 @@ class ElmoDrive:
         if self._unread > _UNREAD:
             raise DriveFaultError(
                 "sensor",
-                f"{self._unread} queries of the drive's analog input {source.number} in a row are "
-                "without an answer",
+                f"the drive did not answer {self._unread} consecutive queries of its analog input {source.number}",
                 measured=self._unread,
                 allowed=_UNREAD,
             )
@@ -386,7 +386,8 @@ class ElmoDrive:
         if seen.surplus and now - self._given_up < self.options.heartbeat:
             seen.surplus = 0
             raise DriveFaultError(
-                "stale_position", "an answer to a SYNC came so late that it was taken for the next"
+                "stale_position",
+                "an answer to a SYNC was so late that it was taken for the answer to the next SYNC",
             )
         seen.surplus = 0
         if seen.complete:

@@ -109,7 +109,7 @@ class ElmoType(DriveType):
         """Return the cycles. Each has a SYNC, its answers, a command and our heartbeat."""
         if joint.torque_constant is None:
             raise InputError(
-                "missing; without it the recorded commands are no torques",
+                "missing; without a torque constant, the recorded commands are only currents",
                 argument="torque_constant",
             )
         reader = CycleReader(

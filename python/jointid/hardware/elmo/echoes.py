@@ -57,7 +57,7 @@ class CommandEchoes:
                 return "" if place < _MOST_MISSING else self._unanswered(place)
         if self._last is not None and current == self._last:
             return ""  # duplicate frame
-        wanted_text = f", sent was {self._waiting[0]:.6g} A" if self._waiting else ""
+        wanted_text = f", but {self._waiting[0]:.6g} A was sent" if self._waiting else ""
         return (
             f"the drive acknowledges TC = {current:.6g} A{wanted_text}: a command was changed in transmission, or "
             "another program commands the drive"
@@ -82,6 +82,6 @@ class CommandEchoes:
 
     def _unanswered(self, count: int) -> str:
         return (
-            f"the drive has not acknowledged {count} torque commands in a row, {_MOST_MISSING - 1} may be "
-            "lost: its torque is not what was commanded"
+            f"the drive has not acknowledged {count} torque commands in a row, more than {_MOST_MISSING - 1}: "
+            "its torque differs from the command"
         )

@@ -136,7 +136,7 @@ def elmo_devices(
     )
     if joint.torque_constant is None:
         raise InputError(
-            "missing, so no torque can be commanded; state it under [drive] of the joint file",
+            "missing, so no torque can be commanded; state torque_constant under [drive] of the joint file",
             argument="torque_constant",
         )
     limit = torque_limit(bench.joint)

@@ -99,8 +99,9 @@ class ForeignWatch:
             self.frames.append(f"{when:.6f} {identifier:03X}#{payload.hex().upper()}")
         if identifier == canopen.heartbeat_id(master):
             return (
-                f"another node sends the heartbeat of node {master} ({identifier:03X}h): it would keep the drive on "
-                "after this program has died; give the session a node of its own (master in [session.drive])"
+                f"another node sends the heartbeat of node {master} ({identifier:03X}h): this heartbeat would keep "
+                "the drive on after this program has died; choose an unused node for the session (master in "
+                "[session.drive])"
             )
         return f"another program commands the drive: {self._act(identifier, payload)}"
 

@@ -299,7 +299,7 @@ class ElmoLink:
         if message.is_error_frame:
             meaning = error_frame_meaning(message.arbitration_id, bytes(message.data))
             if meaning:
-                self._note("bus", f"an error frame of the CAN controller: {meaning}")
+                self._note("bus", f"the CAN controller reported an error frame: {meaning}")
             return True
         if message.is_extended_id or message.is_remote_frame or message.is_fd:
             return True  # not a frame of the drive
@@ -384,7 +384,9 @@ class ElmoLink:
             self._note_second(self.alone.boots())
         elif self.up and canopen.STATES.get(state) != "operational":
             name = canopen.STATES.get(state, f"0x{state:02X}")
-            self._note("drive_fault", f"the drive has left the state operational: it is {name}")
+            self._note(
+                "drive_fault", f"the drive has left the state 'operational': its state is '{name}'"
+            )
 
     def _note_second(self, meaning: str) -> None:
         """Note a second node that answers, while the drive is being connected."""

@@ -40,6 +40,6 @@ class LoneNode:
 
     def _two(self, seen: str) -> str:
         return (
-            f"two nodes answer as {self._node}: {seen} (or the drive has restarted); switch one drive "
-            "off, and give it another node number"
+            f"two drives answer as node {self._node}: {seen} (or the drive has restarted); switch one drive "
+            "off, and change the node number of the other"
         )

@@ -88,7 +88,7 @@ class ElmoOptions:
             raise InputError("1 to 127 is expected", argument="node", value=self.node)
         if not 1 <= self.master_node <= 127 or self.master == self.node:
             raise InputError(
-                f"1 to 127 is expected, not {self.node}, which is the drive's",
+                f"1 to 127 is expected, other than the drive's node {self.node}",
                 argument="master",
                 value=self.master,
             )
@@ -104,7 +104,7 @@ class ElmoOptions:
             )
         if not 0.001 <= self.drive_heartbeat <= 0.5 * self.heartbeat:
             raise InputError(
-                f"0.001 s to half of heartbeat, {0.5 * self.heartbeat:g} s, is expected",
+                f"0.001 s to {0.5 * self.heartbeat:g} s (half of heartbeat) is expected",
                 argument="drive_heartbeat",
                 value=self.drive_heartbeat,
             )
@@ -129,7 +129,7 @@ class ElmoOptions:
             ]
             if others:
                 raise InputError(
-                    f"{name} and {others[0]} are both 0x{identifier:X}; frames need identifiers of their own",
+                    f"{name} and {others[0]} are both 0x{identifier:X}; each frame needs its own identifier",
                     argument=name,
                 )
 

@@ -17,8 +17,8 @@ _LIMITS = (
     ("PL", 1, "peak current", "A"),
     ("PL", 2, "longest time at peak current", "s"),
     ("CL", 1, "continuous current", "A"),
-    ("CL", 2, "share of peak current above which a standing motor is stuck", "%"),
-    ("CL", 3, "speed below which the motor counts as standing", "count/s"),
+    ("CL", 2, "share of peak current above which a motor at rest counts as stuck", "%"),
+    ("CL", 3, "speed below which the motor counts as being at rest", "count/s"),
     ("MC", 0, "the drive's own peak current", "A"),
     ("HL", 2, "highest speed of the motor", "count/s"),
     ("LL", 2, "lowest speed of the motor", "count/s"),
@@ -71,7 +71,7 @@ def limits(link: ElmoLink, resolution: float) -> tuple[Reported, ...]:
     found += [
         Reported(
             name="6075h",
-            meaning="current that the measured torque 6077h is a share of",
+            meaning="reference current of the measured torque 6077h",
             value=rated,
             unit="mA",
             # The measured current is taken as per mille of CL[1].

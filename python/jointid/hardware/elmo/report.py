@@ -82,7 +82,7 @@ def _trouble(link: ElmoLink, status: DriveStatus | None) -> str:
     found = [status.problem]
     if status.failure:
         meaning = failure_meaning(int(link.number("MF") or 0))
-        found.append(f"the drive has shut its motor down before: {meaning or 'MF is 0'}")
+        found.append(f"the drive has shut its motor down earlier: {meaning or 'MF is 0'}")
     return "; ".join(text for text in found if text)
 
 

@@ -79,13 +79,13 @@ def watchdog_objects(link: ElmoLink, options: ElmoOptions) -> tuple[Reported, ..
         ),
         Reported(
             name="1029h:1",
-            meaning="state after a missing heartbeat (1: no change, it still answers)",
+            meaning="drive state after a missing heartbeat (1: no change, the drive still answers)",
             value=_object(link, 0x1029, 1),
             expected=1,
         ),
         Reported(
             name="2F21h",
-            meaning="needed emergencies that are enabled",
+            meaning="required emergency messages that are enabled",
             value=_hexadecimal(emergencies & _EMERGENCIES, 3),
             expected=_hexadecimal(_EMERGENCIES, 3),
         ),

@@ -52,7 +52,7 @@ def fall_silent(link: ElmoLink, options: ElmoOptions, switch: MotorSwitch) -> Dr
     link.read_waiting()
     register = link.number("SR", CYCLES * options.heartbeat)
     if register is None or not DriveStatus.of(int(register)).motor_on:
-        raise DriveFaultError("drive_fault", "the motor is off before the heartbeat was stopped")
+        raise DriveFaultError("drive_fault", "the motor was off before the heartbeat was stopped")
     link.echoes.end()  # no commands are sent from here
     link.tap = watch
     try:

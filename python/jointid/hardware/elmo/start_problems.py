@@ -9,7 +9,7 @@ from jointid.hardware.elmo.errors import DriveStatus, failure_meaning
 from jointid.hardware.elmo.link import ElmoLink
 from jointid.hardware.elmo.options import ElmoOptions
 
-IN_USE = "the motor is on already: another program commands the drive; switch the motor off there"
+IN_USE = "the motor is already on: another program commands the drive; switch the motor off in that program"
 
 
 def reasons_not_to_start(
@@ -49,8 +49,8 @@ def reasons_not_to_start(
         allowed = min(allowed, allowed_current)
     if peak > allowed * (1.0 + 1e-6):
         reasons.append(
-            f"the drive's peak current PL[1] is {peak:g} A, the session allows {allowed:.4g} A; lower PL[1], or "
-            "raise the session's torque limit or the joint's current limit"
+            f"the drive's peak current PL[1] is {peak:g} A, but the session allows only {allowed:.4g} A; lower "
+            "PL[1], or raise the session's torque limit or the joint's current limit"
         )
     status = DriveStatus.of(int(link.ask(Command(letters="SR")).value))
     if status.problem:
@@ -58,9 +58,9 @@ def reasons_not_to_start(
     if status.failure and not options.acknowledge:
         meaning = failure_meaning(int(link.ask(Command(letters="MF")).value))
         reasons.append(
-            f"the drive has shut its motor down before ({meaning or 'MF is 0'}); when that is "
-            "fixed, start once with acknowledge = true under [session.drive] of the joint file, and remove "
-            "it afterwards"
+            f"the drive has shut its motor down earlier ({meaning or 'MF is 0'}); remove the cause, then "
+            "start the session once with acknowledge = true under [session.drive] of the joint file; "
+            "delete this line after the session"
         )
     if status.unit_mode != 1:
         reasons.append(f"the drive is in unit mode {status.unit_mode}, not in torque mode (UM=1)")

@@ -62,7 +62,9 @@ class MotorSwitch:
         link.ask(Command(letters="MO", value=1), _ENABLE, meanwhile=self._beat_in_time)
         while not self._status().motor_on:
             if link.clock.now() > end:
-                raise DriveFaultError("drive_fault", "the motor does not come on (MO=1, SR bit 4)")
+                raise DriveFaultError(
+                    "drive_fault", "the motor does not switch on (MO=1, SR bit 4)"
+                )
             link.clock.sleep_until(link.clock.now() + self._beat_in_time())
         link.ask(ZERO, meanwhile=self._beat_in_time)
         self.beat()  # restart the timeout before the first cycle

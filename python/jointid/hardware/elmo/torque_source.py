@@ -96,7 +96,7 @@ class SyncedConverter:
             raise InputError("1 to 24 is expected", argument="bits", value=self.bits)
         if not self.lowest < self.highest:
             raise InputError(
-                f"less than highest, {self.highest!r} V, is expected",
+                f"a voltage below highest ({self.highest!r} V) is expected",
                 argument="lowest",
                 value=self.lowest,
             )
@@ -111,7 +111,7 @@ class SyncedConverter:
         """
         if len(payload) < 4:
             raise InputError(
-                f"a converter's frame of {len(payload)} bytes; at least 4 are expected"
+                f"a converter's frame has {len(payload)} bytes; at least 4 are expected"
             )
         total = float(struct.unpack_from("<i", payload)[0])
         share = (total + 0.5) / self.conversions / (1 << self.bits)
@@ -151,7 +151,7 @@ class AnalogInput:
             raise InputError("1 to 1000 is expected", argument="every", value=self.every)
         if not self.lowest < self.highest:
             raise InputError(
-                f"less than highest, {self.highest!r} V, is expected",
+                f"a voltage below highest ({self.highest!r} V) is expected",
                 argument="lowest",
                 value=self.lowest,
             )
@@ -182,7 +182,7 @@ def read_torque_source(table: Table) -> SyncedConverter | AnalogInput | None:
     scaling = table.without(*({*table.entries} - scale)).make(SensorScaling)
     if kind is None:
         for name in table.without("source").entries:
-            table.refuse(name, "not expected: the source is 'none'")
+            table.refuse(name, "this key is not expected, because source is 'none'")
         return None
     rest = table.without("source", *scale)
     if kind is SyncedConverter:

@@ -24,23 +24,23 @@ class EmulatedBus(can.BusABC):
     ----------
     devices : Device
     bitrate : float
-        Bit rate [bit/s]; with None, frames take no time. Default 500 000.
+        Bit rate [bit/s]. With None, the transmission of a frame takes no time. Default 500 000.
     faults : sequence of BusFault
-        Faults on the wire.
+        Faults of the emulated wire.
     clock_drift : float
-        Relative speed error of the host's clock against devices and joint: 1e-4 is 100 ppm, host fast.
-        Default 0. All times of this class are host times.
+        Relative error of the rate of the host's clock, compared with the clock of devices and joint. With 1e-4, the
+        host's clock is fast by 100 ppm. Default 0. All times of this class are host times.
     jitter : float
         Largest random delay of the host after each wait for a time or a frame [s]. Default 0.
     seed : int
         Seed of the jitter. Default 0.
     data_bitrate : float, optional
-        Bit rate of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+        Bit rate of the data in CAN FD frames [bit/s]. Default: the same as `bitrate`.
 
     Raises
     ------
     InputError
-        `clock_drift` is not within 1 %, or `jitter` not from 0 to 0.1 s.
+        `clock_drift` is outside ±1 %, or `jitter` is outside 0 to 0.1 s.
     """
 
     receive_own_messages = False
@@ -80,7 +80,7 @@ class EmulatedBus(can.BusABC):
         return self._time * self._rate
 
     def at(self, when: float, event: Event) -> None:
-        """Run a callable at a time."""
+        """Run a callable at the time `when` [s]."""
         self._at(when / self._rate, event)
 
     def sleep_until(self, deadline: float) -> None:
@@ -94,7 +94,7 @@ class EmulatedBus(can.BusABC):
         Raises
         ------
         can.CanOperationError
-            The bus is down or off.
+            The bus is down or in the state bus-off.
         """
         del timeout  # an emulated wire always takes a frame
         if self.host_work > 0.0:
@@ -108,7 +108,7 @@ class EmulatedBus(can.BusABC):
         self._transmit(message, None)
 
     def recv(self, timeout: float | None = None) -> can.Message | None:
-        """Return the next frame for the host, waiting in virtual time.
+        """Wait in virtual time for the next frame for the host, and return it.
 
         Raises
         ------

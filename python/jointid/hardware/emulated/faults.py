@@ -32,16 +32,16 @@ class BusFault:
     Attributes
     ----------
     kind : str
-        "drop", "delay", "duplicate" or "corrupt" frames; "down": the interface is down; "bus_off": the
-        controller has left the bus, and its frames are lost.
+        Kind of fault. "drop", "delay", "duplicate" and "corrupt" act on frames. "down": the interface is down.
+        "bus_off": the controller has left the bus, and its frames are lost.
     start, stop : float
-        Begin and end on the bus's clock [s].
+        Start and end of the fault on the bus's clock [s].
     identifier : int, optional
-        Only frames with this identifier. Default: all.
+        Identifier of the affected frames. Default: all frames.
     delay : float
-        Delay of a "delay" fault [s]; other frames may pass meanwhile.
+        Delay of frames by a "delay" fault [s]. Other frames can overtake these frames.
     probability : float
-        Probability that it affects a frame. Default 1.
+        Probability that the fault affects a frame. Default 1.
     seed : int
         Seed of the random choice. Default 0.
     """
@@ -58,7 +58,9 @@ class BusFault:
 
     def __post_init__(self) -> None:
         if self.kind not in BUS_FAULTS:
-            raise InputError(f"known are {', '.join(BUS_FAULTS)}", argument="kind", value=self.kind)
+            raise InputError(
+                f"choose one of {', '.join(BUS_FAULTS)}", argument="kind", value=self.kind
+            )
         if not 0.0 <= self.probability <= 1.0:
             raise InputError("0 to 1 is expected", argument="probability", value=self.probability)
         self._random = Random(self.seed)
@@ -83,7 +85,7 @@ def drive_failure(kind: str) -> tuple[int, int]:
         There is no failure of this name.
     """
     if kind not in DRIVE_FAILURES:
-        raise InputError(f"known are {', '.join(DRIVE_FAILURES)}", argument="kind", value=kind)
+        raise InputError(f"choose one of {', '.join(DRIVE_FAILURES)}", argument="kind", value=kind)
     return DRIVE_FAILURES[kind]
 
 

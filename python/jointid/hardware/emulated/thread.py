@@ -22,37 +22,38 @@ _SENDING = 0.01  # [s] that a full queue may block; the devices' own guards wait
 
 
 class EmulatorThread:
-    """Runs devices on a bus until it is closed; a context manager.
+    """Context manager that runs emulated devices on a bus until it is closed.
 
-    The devices get the services of an `EmulatedBus`, `now`, `at` and `transmit`, on the machine's clock. Their code
-    runs only in this thread. The host uses another bus on the same channel. Events run at their due time on the
-    devices' clock, and frames arrive at the time of their stamps, so a short pause of the machine changes neither
-    the joint nor the watchdog. While the bus is down, frames are lost and the devices continue.
+    The devices use `now`, `at` and `transmit` as on an `EmulatedBus`, with the machine's clock. The code of the
+    devices runs only in this thread. The host uses another bus on the same channel. Events run at their due time on
+    the devices' clock. Frames arrive at the time of their stamps. Therefore, a short pause of the machine does not
+    affect the joint or the watchdog. While the bus is down, frames are lost and the devices continue.
 
     Parameters
     ----------
     bus : can.BusABC
-        Any interface, e.g. "virtual" in one process or "udp_multicast" between two; it stays open.
+        Bus with any interface, e.g. "virtual" in one process or "udp_multicast" between two processes. It stays open
+        at the end.
     devices : Device
     bitrate : float, optional
-        Bit rate of the emulated wire [bit/s], which delays frames in addition to the bus. Use None if the bus
-        itself has this delay. Default 500 000.
+        Bit rate of the emulated wire [bit/s]. The wire delays frames in addition to the bus. Use None if the bus
+        already has this delay. Default 500 000.
     faults : sequence of BusFault
-        Faults on the wire, with times since the start. "down" and "bus_off" lose all frames.
+        Faults of the emulated wire, with times since the start. With "down" and "bus_off", all frames are lost.
     watch : callable, optional
-        Called with the time [s] after each event and frame, to observe the devices.
+        Function to observe the devices. It is called with the time [s] after each event and frame.
     rest : float
-        Shortest time between two checks for due events [s], unless a frame arrives. Events keep their due time on
-        the devices' clock; a larger value saves processor time and delays frames. Default 0.
+        Shortest time between two checks for due events [s], if no frame arrives. Events keep their due time on the
+        devices' clock. A larger value saves processor time, but delays frames. Default 0.
     data_bitrate : float, optional
-        Bit rate of the data of CAN FD frames [bit/s]. Default: the same as `bitrate`.
+        Bit rate of the data in CAN FD frames [bit/s]. Default: the same as `bitrate`.
 
     Attributes
     ----------
     lost : int
-        Frames that the bus did not accept.
+        Number of frames that the bus did not accept.
     trouble : Exception or None
-        The bus's last error.
+        Last error of the bus; None without an error.
 
     Examples
     --------
@@ -98,7 +99,7 @@ class EmulatorThread:
         Raises
         ------
         Exception
-            An error of a device; it ended the thread.
+            Error of a device that ended the thread.
         """
         self._ending.set()
         if self._thread.is_alive():
@@ -127,7 +128,7 @@ class EmulatorThread:
 
     @property
     def failure(self) -> BaseException | None:
-        """Error that ended the thread; None without one."""
+        """Error that ended the thread; None without an error."""
         return self._failure
 
     @property
@@ -138,11 +139,11 @@ class EmulatorThread:
     # For the devices.
 
     def now(self) -> float:
-        """Time since the start [s]; during an event, its due time."""
+        """Time since the start [s]; during an event, the due time of this event."""
         return self._moment if self._moment is not None else self._clock()
 
     def at(self, when: float, event: Event) -> None:
-        """Run a callable at a time, or as soon as possible after it."""
+        """Run a callable at the time `when` [s], or as soon as possible afterwards."""
         self._agenda.add(when, event)
 
     # The thread.

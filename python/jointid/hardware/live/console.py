@@ -16,18 +16,18 @@ _SHORTEST = 0.1  # [s] between two lines
 
 
 class ConsoleLine:
-    """Status line of a session, updated at most ten times per second; an observer of a `Session`.
+    """Status line of a session, updated at most ten times per second; the `observer` of a `Session`.
 
     On a terminal the line is overwritten. In a file, a line is written at the start of each phase and then once per
-    second. A thread writes, so a blocked terminal does not delay the motor's loop. Close it, or use it as a context
-    manager, so that the last line is written.
+    second. A thread writes the line, so a blocked terminal does not delay the control loop. Call `close`, or use the
+    object as a context manager, so that the last line is written.
 
     Parameters
     ----------
     stream : text stream
         E.g. `sys.stderr`.
     now : callable
-        Returns the time [s]; for tests. Default `time.monotonic`.
+        Function that returns the time [s]; for tests. Default `time.monotonic`.
     """
 
     def __init__(self, stream: TextIO, *, now: Callable[[], float] = time.monotonic) -> None:

@@ -22,11 +22,11 @@ _INTERVAL = 0.1  # [s] between two writes to the window
 
 
 class LivePlot:
-    """Window with position, reference, error, torque and sensor; an observer of a `Session`.
+    """Window with position, reference, error, torque and sensor; the `observer` of a `Session`.
 
-    Matplotlib needs tens of milliseconds to draw, which would delay the motor's loop. Therefore another process
-    draws. The loop writes at most 50 points per second to a pipe, ten times per second, and never waits; points that
-    the pipe has no room for are dropped and counted in `dropped`. The window's process still needs processor time.
+    Drawing with Matplotlib takes tens of milliseconds and would delay the control loop. Therefore another process
+    draws. The control loop writes to a pipe ten times per second, at most 50 points per second, and never waits. If
+    the pipe is full, points are dropped; `dropped` is their number. The window's process still needs processor time.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class LivePlot:
     window : bool
         Whether to show a window. Default True; False writes only the picture.
     now : callable
-        Returns the time [s]; for tests. Default `time.monotonic`.
+        Function that returns the time [s]; for tests. Default `time.monotonic`.
 
     Raises
     ------
@@ -56,7 +56,7 @@ class LivePlot:
         if not 0.0 < span < math.inf:
             raise InputError("more than 0 s is expected", argument="span", value=span)
         if picture is None and not window:
-            raise InputError("LivePlot: neither a window nor a picture; nothing would be seen")
+            raise InputError("LivePlot shows nothing without a window or a picture")
         self._now = now
         self._shift = self._before = 0.0
         self._phase = ""

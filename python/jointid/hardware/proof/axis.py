@@ -180,8 +180,8 @@ class Axis:
             if self.now > end:
                 raise RefusedBenchError(
                     "does_not_stop",
-                    f"the joint still moves {_STOPPING:g} s after the torque went to zero; is there "
-                    "gravity without a brake, or hardly any friction?",
+                    f"the joint still moves {_STOPPING:g} s after the torque went to zero; does "
+                    "gravity move it without a brake, or is there hardly any friction?",
                 )
 
     def trace(self, begin: int = 0) -> Trace:
@@ -200,21 +200,21 @@ class Axis:
         if self.travel > self.sizes.travel:
             raise RefusedBenchError(
                 "too_far",
-                f"the joint is {self.travel:.5f} rad from its start, more than {self.sizes.travel:.5f} rad",
+                f"the joint is {self.travel:.5f} rad from its start; at most {self.sizes.travel:.5f} rad is allowed",
             )
         certain = abs(position - before.position) - self.resolution  # rounding adds at most a count
         speed = certain / max(sample.time - before.time, 0.5 * self.period)
         if speed > options.velocity:
             raise RefusedBenchError(
                 "too_fast",
-                f"the joint moves at {speed:.3f} rad/s, more than {options.velocity:g} rad/s",
+                f"the joint moves at {speed:.3f} rad/s; at most {options.velocity:g} rad/s is allowed",
             )
         watch = self.encoder_watch
         if watch is not None and watch.stands(sample.time, position, self._torque):
             raise RefusedBenchError(
                 "encoder_stands",
                 f"the encoder stays at {position:.5f} rad under {self._torque:.4g} N·m, although the joint "
-                "moved at less before: the encoder hangs or is disconnected, or something blocks the joint",
+                "moved at less torque before: the encoder hangs or is disconnected, or something blocks the joint",
             )
         if self.on and not math.isnan(sample.torque):
             self._follow(sample.torque)
@@ -226,5 +226,5 @@ class Axis:
         if self._unfollowed > _FOLLOWED:
             raise RefusedBenchError(
                 "current_does_not_follow",
-                f"the drive reports a current of {torque:.3g} N·m where {self._torque:.3g} N·m are commanded",
+                f"the drive reports a current that gives {torque:.3g} N·m, but {self._torque:.3g} N·m is commanded",
             )

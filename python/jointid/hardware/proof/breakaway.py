@@ -76,9 +76,9 @@ def find_breakaway(
             axis.command(0.0)
             raise RefusedBenchError(
                 "sensor_moves_alone",
-                f"at {torque:.4g} N·m the torque sensor has left its reading at rest ({watch}), but the encoder "
-                "stands: it hangs or is not connected, or the joint is blocked; if the sensor shows the motor's "
-                "torque, set watch_sensor = false in [session.first_motion]",
+                f"at {torque:.4g} N·m the torque sensor's reading has changed ({watch}), but the encoder does not "
+                "count: the encoder hangs or is not connected, or the joint is blocked; if the sensor shows the "
+                "motor's torque, set watch_sensor = false in [session.first_motion]",
             )
         if held < 0.0 and abs(position - place) > (1.0 - 1e-6) * few:
             # An elastic gear may swing on, by its speed times the period of a slow oscillation.
@@ -101,9 +101,9 @@ def find_breakaway(
                 axis.command(0.0)
                 raise RefusedBenchError(
                     "no_motion_up_to_torque_cap",
-                    f"nothing moved up to {cap:.4g} N·m by the joint file's constants; likely: no torque (phases, "
-                    "commutation, current limit), a closed brake, a blocked joint, an encoder that hangs, or a "
-                    "torque constant or gear ratio in the joint file that is too large",
+                    f"the joint did not move at torques up to {cap:.4g} N·m by the joint file's constants; likely: "
+                    "no torque (phases, commutation, current limit), a closed brake, a blocked joint, an encoder that "
+                    "hangs, or too large a torque constant or gear ratio in the joint file",
                 )
         axis.command(direction * torque)
 

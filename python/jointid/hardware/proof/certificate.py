@@ -53,7 +53,7 @@ class Certificate:
     Attributes
     ----------
     date : datetime
-        Date with time zone.
+        Date of the first motion, with time zone.
     joint : mapping
         Facts of the joint file: gear ratio, torque constant, rotor inertia, sign of the sensor's gain.
     wiring : mapping
@@ -61,10 +61,10 @@ class Certificate:
     drive : mapping
         Identity of the drive, including its serial number.
     found : mapping
-        Signs, breakaway in both directions, travel, largest torque, inertia and unchecked items; the time until
-        the drive's watchdog stopped the motor [s], if that was tested.
+        Signs, breakaway torque in both directions, travel, largest torque, inertia and unchecked items. If the
+        watchdog was tested: also the time until the drive stopped the motor [s].
     limits : mapping
-        Limits of the session at that time, the joint's largest current and the encoder's offset.
+        Limits of the session during the first motion, the joint's largest current and the encoder's offset.
     watchdog : mapping
         Watchdog that the drive declared: "time" [s], "fed_by", "then", "read_back".
     versions : mapping
@@ -123,7 +123,8 @@ class Certificate:
     def save(self, path: str | Path) -> None:
         """Write the certificate as TOML, completely or not at all."""
         lines = [
-            "# Written by `jointid first-motion`; `jointid run` on a real joint requires it. Do not edit it.",
+            "# Written by `jointid first-motion`; `jointid run` on a real joint requires this certificate. Do not "
+            "edit this file.",
             f"schema = {SCHEMA}",
             f'date = "{self.date.isoformat(timespec="seconds")}"',
         ]
@@ -141,7 +142,7 @@ class Certificate:
         Raises
         ------
         InputError
-            The file cannot be read or is not a certificate; the error names the file.
+            The file cannot be read or is not a certificate. The error names the file.
         """
         source = Path(path)
         try:
@@ -181,9 +182,13 @@ class Certificate:
         age = (now or datetime.now(UTC)) - self.date
         found = []
         if age > VALID:
-            found.append(f"it is {age.days} days old, more than {VALID.days}")
+            found.append(
+                f"the certificate is {age.days} days old; it is valid for {VALID.days} days"
+            )
         if age < -_CLOCK:
-            found.append(f"it is dated {self.date.isoformat(timespec='minutes')}, in the future")
+            found.append(
+                f"the certificate's date, {self.date.isoformat(timespec='minutes')}, is in the future"
+            )
         found += _changes("joint", "the joint file's", self.joint, joint_facts(bench))
         wiring = _plain(drive_type(bench.drive_type).wiring(bench.drive))
         found += _changes("wiring", "the joint file's", self.wiring, wiring)
@@ -259,7 +264,7 @@ def _changes(
     table: str, whose: str, before: Mapping[str, Any], after: Mapping[str, Any]
 ) -> list[str]:
     if after and not before:
-        return [f"the certificate lacks what [{table}] states"]
+        return [f"the certificate has no table [{table}], but the bench states these facts"]
     return [
         f"{whose} {name} was {before.get(name, 'not there')} and is {after.get(name, 'not there')}"
         for name in dict.fromkeys((*before, *after))

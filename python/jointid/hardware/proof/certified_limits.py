@@ -52,14 +52,14 @@ def widened(before: Mapping[str, Any], bench: Bench) -> list[str]:
     for name in _LARGEST:
         was, now = _largest(before.get(name)), _largest(after[name])
         if now > was * (1.0 + _SAME):
-            found.append(f"the {name} limit was {was:g} and is {now:g}, which is wider")
+            found.append(f"the {name} limit is wider than certified: it was {was:g} and is {now:g}")
     window = before.get("position")
     if isinstance(window, list) and len(window) == 2:
         (low, high), (lowest, highest) = window, after["position"]
         if lowest < low - _SAME or highest > high + _SAME:
             found.append(
-                f"the position window was {low:.4g} to {high:.4g} rad and is {lowest:.4g} to {highest:.4g} rad, "
-                "which is wider"
+                f"the position window is wider than certified: it was {low:.4g} to {high:.4g} rad and is "
+                f"{lowest:.4g} to {highest:.4g} rad"
             )
     return found
 

@@ -39,21 +39,21 @@ class BenchCheck:
     identity : mapping
         Identity that the drive reported.
     report : DriveReport or None
-        Settings of the drive; None if it reports none.
+        Settings of the drive; None if the drive reports no settings.
     position, velocity : float
         Output angle [rad] and mean speed [rad/s] during the check.
     reading, noise : float
         Mean and standard deviation of the torque sensor's raw readings; NaN without a sensor.
     differences : tuple of str
-        Differences between the drive's settings and the needs of the joint file.
+        Differences between the drive's settings and the settings that the joint file requires.
     problems : tuple of str
         Reasons not to move the joint.
     watchdog : WatchdogTravel or None
-        Travel of the joint after the host fails; None if the drive declares no watchdog.
+        Travel of the joint after a failure of the host; None if the drive declares no watchdog.
     remarks : tuple of str
-        Recommended changes that do not prevent a motion.
+        Recommended changes. A motion is also possible without them.
     first_motion : str
-        Travel of the first motion with this encoder.
+        Text on the travel of a first motion with this encoder.
     """
 
     address: str
@@ -147,7 +147,7 @@ def check_bench(
     seed : int
         Seed of the emulated noise. Default 0.
     drive : Drive, optional
-        An open drive; it is closed at the end. Default: the bench's drive.
+        An open drive. The check closes this drive at its end. Default: the bench's drive.
 
     Returns
     -------
@@ -156,7 +156,7 @@ def check_bench(
     Raises
     ------
     InputError
-        Not a Bench, or its drive cannot be opened.
+        `bench` is not a Bench, or its drive cannot be opened.
 
     Examples
     --------
@@ -231,8 +231,8 @@ def _read(bench: Bench, drive: Drive, found: dict[str, Any]) -> None:
     moved = float(np.ptp(positions)) / resolution
     if not moved <= _DRIFT:
         problems.append(
-            f"the joint moves: {moved:.0f} counts within {duration:.2f} s, motor off; hold it still, and "
-            "support it against gravity"
+            f"the joint moves: {moved:.0f} counts within {duration:.2f} s with the motor off; hold the joint "
+            "still, and support it against gravity"
         )
     found["problems"] = tuple(problems)
 
@@ -250,6 +250,6 @@ def _wide_speeds(report: DriveReport, velocity: float) -> Iterator[str]:
         if times > _LITTLE_ABOVE:
             yield (
                 f"the drive's own speed limit {each.name} is {each.value:.0f} {each.unit}, {times:.0f} times the "
-                f"joint's velocity limit of {velocity:g} rad/s; set {each.name} a little beyond "
+                f"joint's velocity limit of {velocity:g} rad/s; set {each.name} slightly beyond "
                 f"{each.value / times:.0f} {each.unit}"
             )

@@ -68,8 +68,8 @@ def small_move(
             axis.command(0.0)
             raise RefusedBenchError(
                 "control",
-                f"the joint is {worst:.5f} rad away from the reference of a motion of {abs(amplitude):.5f} rad, more "
-                f"than {allowed:.5f} rad",
+                f"in a motion of {abs(amplitude):.5f} rad, the joint is {worst:.5f} rad away from the reference; "
+                f"at most {allowed:.5f} rad is allowed",
             )
         side = breakaway[0] if pace > 0.0 else breakaway[1]
         torque = stiffness * error + damping * (pace - speed_of(sample.time, sample.position))

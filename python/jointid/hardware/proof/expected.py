@@ -103,9 +103,10 @@ def scale_fault(expected: Expected, friction: float, inertia: float) -> str | No
 
     Notes
     -----
-    A torque constant that is wrong by a factor s divides both by s. A gear ratio that is wrong by a factor n divides
-    the friction by n. It does not change the rotor's inertia, because torque and angle are both wrong. It divides the
-    link's inertia by n².
+    If the true torque constant is s times the stated one, measured friction and inertia are the true values divided by
+    s. If the true gear ratio is n times the stated one, measured friction is the true friction divided by n. The
+    measured inertia of the link is then the true inertia divided by n². The inertia of the rotor at the output still
+    agrees with the stated value, because torque and angle are both wrong.
     """
     if expected.breakaway is None:
         return None

@@ -34,9 +34,9 @@ def await_hand_turn(axis: Axis, longest: float) -> float:
             if axis.now > end:
                 raise RefusedBenchError(
                     "encoder_stands",
-                    f"the encoder counted {farthest / axis.resolution:.0f} in {longest:g} s of waiting for a turn by "
-                    f"hand, fewer than {_COUNTS:.0f}: turn the joint; if it was turned, the encoder is not "
-                    "connected, or hangs",
+                    f"in {longest:g} s of waiting for a turn by hand, the encoder moved by "
+                    f"{farthest / axis.resolution:.0f} counts, fewer than {_COUNTS:.0f}: turn the joint; if you have "
+                    "turned it, the encoder hangs or is not connected",
                 )
         place, since, end = axis.sample.position, axis.now, axis.now + longest
         while axis.now - since < _QUIET:
@@ -46,6 +46,6 @@ def await_hand_turn(axis: Axis, longest: float) -> float:
                 place, since = position, axis.now
             if axis.now > end:
                 raise RefusedBenchError(
-                    "moving", f"the joint was still turned by hand after {longest:g} s; let it go"
+                    "moving", f"the joint was still turning after {longest:g} s; let the joint go"
                 )
     return farthest

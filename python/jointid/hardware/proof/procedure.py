@@ -32,34 +32,38 @@ def first_motion(
 ) -> FirstMotion:
     """Move a joint for the first time, and find signs, breakaway and scales in small motions.
 
-    Steps: rest with the motor off; rest with the motor on at zero torque; torque from zero up to the first encoder
-    counts, in both directions; short pushes just above breakaway; small slow controlled motions. Each step has its own
-    stop. The first error ends the procedure with the motor off.
+    1. The joint rests with the motor off.
+    2. The joint rests with the motor on at zero torque.
+    3. In both directions, the torque grows from zero until the encoder counts.
+    4. Short pushes just above the breakaway torque move the joint.
+    5. A controller moves the joint slowly along small motions.
+
+    Each step has its own condition to stop. The first error ends the procedure with the motor off.
 
     Parameters
     ----------
     bench : Bench
     emulate : bool
-        Whether to use an emulated drive and joint in virtual time. Default False: the real ones.
+        Whether to use an emulated drive and joint in virtual time. Default False: the real drive and joint.
     seed : int
         Seed of the emulated noise. Default 0.
     drive : Drive, optional
-        An open drive; it is closed at the end. Default: the bench's drive.
+        An open drive. The procedure closes this drive at its end. Default: the bench's drive.
     callback : callable, optional
-        Called with each line of the report.
+        Function that is called with each line of the report.
     watchdog : bool
-        Whether to test the watchdog after all other steps: the host stops sending with the motor on at zero torque, and
-        the drive must stop the motor as it declares. Default False.
+        Whether to test the drive's watchdog after all other steps. The motor is then on at zero torque, and the host
+        stops sending. The drive must stop the motor as its `Watchdog` declares. Default False.
 
     Returns
     -------
     FirstMotion
-        A refused bench is a result, not an exception.
+        Result of the procedure. A refused bench is also a result and raises no exception.
 
     Raises
     ------
     InputError
-        Not a Bench, or its drive cannot be opened, or its watchdog cannot be tested.
+        `bench` is not a Bench, its drive cannot be opened, or its watchdog cannot be tested.
     Exception
         A bug in the drive; the motor is switched off first.
 
@@ -112,7 +116,10 @@ def _moved(
         drive.close()
     (end,) = ended
     if end.motor_off is False and reason is None:
-        reason, message = "drive_fault", "the motor was not seen off at the end"
+        reason, message = (
+            "drive_fault",
+            "the drive did not confirm at the end that the motor is off",
+        )
     axis = steps.axis
     return FirstMotion(
         passed=reason is None,

@@ -118,7 +118,7 @@ def push(axis: Axis, direction: float, torque: float, reach: float) -> Push:
     if max(abs(row[1] - place) for row in axis.rows[begin:]) < 1.5 * axis.resolution:
         raise RefusedBenchError(
             "encoder_stands",
-            f"{direction * torque:.4g} N·m did not move the joint, which moved at less before: the encoder "
+            f"{direction * torque:.4g} N·m did not move the joint, but less torque moved it before: the encoder "
             "hangs or is disconnected, or something blocks the joint",
         )
     return Push(axis.trace(begin), direction, axis.latency, axis.resolution)

@@ -9,18 +9,21 @@ from typing import Any
 from jointid.hardware.session.watchdog import Watchdog
 
 UNCHECKED = {
-    "positive_direction": "torque and encoder inverted together look correct: check in which direction the link moves",
-    "encoder": "that the encoder counts: no other sensor shows motion, and nobody turned the joint by hand with the "
-    "motor off; the reported travel is what the encoder saw",
-    "homing": "that the joint's zero is where position_offset says",
-    "backlash": "how far the motor turns without the output",
-    "torque_constant": "the torque constant: the joint file states neither friction nor inertia to check it with",
-    "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and no friction in "
-    "the joint file to check them with",
-    "inertia": "the joint's inertia: the joint file states none to check it with, or it could not be measured",
-    "sensor_sign": "the sign of the torque sensor: it shows too little of the joint's acceleration",
-    "watchdog": "that the drive stops its motor if the host is gone: test it with --watchdog, or pull the plug once",
-    "serial_number": "which drive it is: it reports no serial number, so another drive of its type looks the same",
+    "positive_direction": "if torque and encoder are both inverted, the motion looks correct: check in which direction "
+    "the link moves",
+    "encoder": "whether the encoder counts: no other sensor shows motion, and nobody turned the joint by hand with the "
+    "motor off; the reported travel comes from the encoder alone",
+    "homing": "the joint's zero, position_offset",
+    "backlash": "the backlash: how far the motor turns while the output is at rest",
+    "torque_constant": "the torque constant: the joint file states neither friction nor inertia for this check",
+    "gear_ratio": "the gear ratio and the encoder's counts: there is no encoder at the output, and the joint file "
+    "states no friction for this check",
+    "inertia": "the joint's inertia: the joint file states no inertia, or the motion did not show the inertia",
+    "sensor_sign": "the sign of the torque sensor: its signal hardly shows the joint's acceleration",
+    "watchdog": "the drive's watchdog, which stops the motor if the host is gone: test it with --watchdog, or pull "
+    "the plug once",
+    "serial_number": "the drive's identity: the drive reports no serial number, so another drive of its type "
+    "looks the same",
     "emergency_stop": "the emergency stop, the brake and the end stops",
     "control": "a motion under control: the inertia is not known",
 }
@@ -39,32 +42,32 @@ class FirstMotion:
     message : str
         One sentence about the refusal, with numbers; empty if passed.
     travel : float
-        Largest distance from the start, by the joint file's gear ratio [rad].
+        Largest distance from the start [rad], computed with the joint file's gear ratio.
     largest_torque : float
-        Largest commanded magnitude, by the joint file's constants [N·m].
+        Largest magnitude of the commanded torque [N·m], computed with the joint file's constants.
     breakaway : tuple of float or None
-        Breakaway torque in the positive and the negative direction [N·m]; None: not found.
+        Breakaway torque in the positive and the negative direction [N·m]; None if not found.
     signs : mapping
-        "torque_and_encoder" and "sensor": 1 as in the joint file, -1 inverted, None not known.
+        Signs of "torque_and_encoder" and "sensor": 1 as in the joint file, -1 if inverted, None if not known.
     unchecked : tuple of str
         Codes of unchecked items, from `UNCHECKED`.
     inertia, stated_breakaway, stated_inertia : float or None
-        Measured inertia [kg·m²]; breakaway torque [N·m] and inertia [kg·m²] of the joint file.
+        Measured inertia [kg·m²], and breakaway torque [N·m] and inertia [kg·m²] in the joint file.
     watchdog : float or None
-        Time from the host's last sign of life until the drive stopped its motor [s]; None if not tested, or if it
-        did not stop.
+        Time from the host's last sign of life until the drive stopped its motor [s]; None if not tested, or if the
+        motor was not stopped.
     drive_watchdog : Watchdog or None
-        Watchdog that the drive declares; None: no watchdog, and no certificate.
+        Watchdog that the drive declares; None if it declares none. A certificate needs a watchdog.
     sensor_zero : float or None
         Mean reading of the torque sensor at rest.
     duration : float
-        Time on the bench [s].
+        Duration of the first motion [s].
     motor_off : bool or None
         Whether the drive confirmed that its motor is off.
     identity : mapping
         Identity that the drive reported.
     steps : tuple of str
-        Tests and measurements, in order.
+        Lines of the report on tests and measurements, in order.
     """
 
     passed: bool
@@ -94,7 +97,7 @@ class FirstMotion:
         if self.drive_watchdog is None:
             return "the drive declares no watchdog"
         if not self.drive_watchdog.read_back and self.watchdog is None:
-            return "the drive does not confirm its watchdog, and it was never tested: test it with --watchdog"
+            return "the drive does not confirm its watchdog, and no test of the watchdog has passed: use --watchdog"
         return ""
 
     def to_dict(self) -> dict[str, Any]:
@@ -120,7 +123,7 @@ class FirstMotion:
         else:
             lines = [f"REFUSED ({self.reason}): {self.message}"]
         if self.motor_off is False:
-            lines.append("THE MOTOR WAS NOT SEEN OFF")
+            lines.append("THE DRIVE DID NOT CONFIRM THAT THE MOTOR IS OFF")
         if self.unchecked:
             lines.append("not checked:")
             lines += [f"  {code}: {UNCHECKED.get(code, code)}" for code in self.unchecked]

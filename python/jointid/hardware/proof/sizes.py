@@ -65,7 +65,10 @@ def resolution_of(bench: Bench, drive: Drive) -> float:
     """
     resolution = bench.options.resolution or getattr(drive, "resolution", None)
     if resolution is None:
-        raise InputError("missing; this drive has none", argument="resolution")
+        raise InputError(
+            "missing; this drive does not report the resolution of the encoder",
+            argument="resolution",
+        )
     return float(resolution)
 
 
@@ -88,7 +91,7 @@ def sizes_of(options: FirstMotionOptions, resolution: float) -> Sizes:
         moves = options.moves
     if max(moves, default=0.0) > travel:
         raise InputError(
-            f"amplitudes of at most travel, {travel:.4g} rad, are expected",
+            f"amplitudes of at most {travel:.4g} rad (the travel) are expected",
             argument="moves",
             value=moves,
         )

@@ -141,9 +141,9 @@ class Steps:
                 # With a frozen encoder, the torque limit would turn the joint many times, and nothing would show it.
                 raise RefusedBenchError(
                     "not_ready",
-                    "if the encoder hangs, neither a known friction nor a torque sensor ends the search for motion: "
-                    "state the friction in the joint file, or set largest_torque (--largest-torque) to at most "
-                    "twice the torque at which you expect motion",
+                    "if the encoder hangs, neither a known friction nor a torque sensor ends the search for "
+                    "motion: state the friction in the joint file, or set largest_torque (--largest-torque) to at "
+                    "most twice the torque at which you expect motion",
                 )
             factor = _CAP if self._watched else _CAP_UNWATCHED
             given = math.inf if stated is None else factor * stated
@@ -151,7 +151,7 @@ class Steps:
         if not math.isfinite(cap):
             raise RefusedBenchError(
                 "not_ready",
-                "the largest torque is not known: give the joint file a torque or current limit, or its friction",
+                "the largest torque is not known: state a torque limit, current limit or friction in the joint file",
             )
         return cap
 
@@ -179,15 +179,15 @@ class Steps:
         )
         self.axis = axis
         if self._options.hand_turn is not None:
-            self._say(f"turn the joint by hand, and leave it: {self._options.hand_turn:g} s")
+            self._say(f"turn the joint by hand within {self._options.hand_turn:g} s, then let go")
             turned = await_hand_turn(axis, self._options.hand_turn)
-            self._say(f"the encoder counts: turned by {turned:.5f} rad")
+            self._say(f"the encoder counts: the joint was turned by {turned:.5f} rad")
         reasons = [*problems_at_rest(axis.sample, bench.limits), *slow_on_bench(bench, drive, axis)]
         low, high = bench.limits.position
         if not low + sizes.travel <= axis.sample.position <= high - sizes.travel:
             reasons.append(
-                f"the joint is at {axis.sample.position:.4f} rad, too near to the end of its window, {low:.4f} "
-                f"to {high:.4f} rad, for a motion of {sizes.travel:.4f} rad"
+                f"the joint is at {axis.sample.position:.4f} rad, too near to the end of its window "
+                f"({low:.4f} to {high:.4f} rad) for a motion of {sizes.travel:.4f} rad"
             )
         if reasons:
             raise RefusedBenchError("not_ready", "; ".join(reasons))
@@ -199,14 +199,14 @@ class Steps:
         if not load <= FULLEST_BUS:
             raise RefusedBenchError(
                 "not_ready",
-                f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * FULLEST_BUS:.0f} %; take a "
-                "longer period",
+                f"the bus load is {100.0 * load:.0f} %, more than {100.0 * FULLEST_BUS:.0f} %; state a longer "
+                "period",
             )
         if period > _SLOWEST:
             raise RefusedBenchError(
                 "not_ready",
-                f"a period of {period:g} s is too long for a first motion: between two samples a push goes too far; "
-                f"at most {_SLOWEST:g} s are expected",
+                f"a period of {period:g} s is too long for a first motion: the joint goes too far between samples; "
+                f"at most {_SLOWEST:g} s is expected",
             )
 
     def _stands(self, axis: Axis, when: str) -> None:
@@ -224,16 +224,16 @@ class Steps:
                     "moves_at_zero_torque" if axis.on else "moving",
                     f"{when}, the joint moved {moved:.0f} counts within {self._options.still_time:g} s; "
                     + (
-                        "gravity that only the brake has held, a current that is not zero, or another program"
+                        "likely: gravity after the brake has opened, a current that is not zero, or another program"
                         if axis.on
-                        else "hold it still, and support it against gravity"
+                        else "hold the joint still, and support it against gravity"
                     ),
                 )
         if self._expected.sensor:
             self.found["sensor_zero"] = float(np.mean(readings))
             if self._watched:
                 self._deviation = float(np.std(readings))
-        self._say(f"stands, {when}: {axis.sample.position:+.5f} rad")
+        self._say(f"at rest, {when}: {axis.sample.position:+.5f} rad")
 
     def _breakaway(self, axis: Axis, direction: float, cap: float) -> Breakaway:
         side = "positive" if direction > 0.0 else "negative"
@@ -247,7 +247,7 @@ class Steps:
         self.found["breakaway"] = tuple(torques)
         way = "along" if found.along else "AGAINST"
         self._say(
-            f"{side} torque: moves at {found.torque:.3f} N·m, {way} the torque"
+            f"{side} torque: the joint moves at {found.torque:.3f} N·m, {way} the torque"
             + (f", after yielding by {found.wind_up:.5f} rad" if found.wind_up > 2e-4 else "")
         )
         return found
@@ -266,9 +266,9 @@ class Steps:
         self.signs["torque_and_encoder"] = -1
         raise RefusedBenchError(
             "torque_and_encoder_disagree",
-            "a positive torque makes the encoder count down, and a negative one up: the torque or the encoder is "
-            "inverted. Look in which direction a positive torque moves the link: if that is your positive direction, "
-            "the encoder is inverted, otherwise the torque",
+            "a positive torque makes the encoder count down, a negative torque up: torque or encoder is "
+            "inverted. Look in which direction a positive torque moves the link: if this is your positive direction, "
+            "the encoder is inverted, otherwise the torque is inverted",
         )
 
     def _judge_scales(self, axis: Axis, breakaway: tuple[float, float]) -> None:
@@ -292,7 +292,7 @@ class Steps:
         raise RefusedBenchError(
             code,
             f"the joint moves at {friction:.4g} N·m by the joint file's constants, {friction / stated:.3g} times "
-            f"the {stated:.4g} N·m that it states"
+            f"the stated friction of {stated:.4g} N·m"
             + ("" if math.isnan(inertia) else f", with an inertia of {inertia:.3g} kg·m²")
             + "; if the stated friction is only a guess, set compare_friction = false in "
             "[session.first_motion]",
@@ -356,34 +356,34 @@ class Steps:
             return
         said = (
             f"the joint's inertia is {inertia:.3g} kg·m² by the joint file's constants, {ratio:.3g} times the "
-            f"{stated:.3g} kg·m² that it states"
+            f"stated inertia of {stated:.3g} kg·m²"
         )
         if known:
             raise RefusedBenchError(
                 "inertia",
-                f"{said}, and its friction is as stated: rotor_inertia or [link] is wrong",
+                f"{said}, but the friction agrees with the joint file: rotor_inertia or [link] is wrong",
             )
         # A wrong gear ratio does not change the rotor's inertia. It can only increase the link's.
         raise RefusedBenchError(
             "torque_constant" if ratio < 1.0 else "torque_constant_or_gear_ratio",
-            f"{said}: one of the constants is wrong, or the stated inertia",
+            f"{said}: one of the constants or the stated inertia is wrong",
         )
 
     def _judge_response(self, response: SensorResponse) -> None:
         z = response.significance * self._expected.sensor_sign
         if abs(z) <= _CLEAR:
             self.unchecked.append("sensor_sign")
-            self._say(f"torque sensor: its sign does not show ({abs(z):.1f} standard errors)")
+            self._say(f"torque sensor: sign not clear (response of {abs(z):.1f} standard errors)")
             return
         self.signs["sensor"] = 1 if z > 0.0 else -1
         if z < 0.0:
             raise RefusedBenchError(
                 "sensor_sign",
-                f"the torque sensor's reading falls where the link is accelerated in the positive direction "
-                f"({abs(z):.0f} standard errors): it is inverted, sensor_gain has the wrong sign, "
+                f"the torque sensor's reading falls when the link accelerates in the positive direction "
+                f"(response of {abs(z):.0f} standard errors): the sensor is inverted, sensor_gain has the wrong sign, "
                 "or torque and encoder are both inverted",
             )
-        self._say(f"torque sensor: right sign ({z:.0f} standard errors)")
+        self._say(f"torque sensor: right sign (response of {z:.0f} standard errors)")
 
     def _under_control(
         self, axis: Axis, breakaway: tuple[float, float], motion: Motion, wind_up: float

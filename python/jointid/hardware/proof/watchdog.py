@@ -27,9 +27,9 @@ def silence_of(drive: Drive) -> Callable[[], DriveSilence]:
     method = getattr(drive, "fall_silent", None)
     if not callable(method):
         raise InputError(
-            "this drive has no method fall_silent, so its watchdog cannot be tried",
+            "this drive has no method fall_silent, so its watchdog cannot be tested",
             argument="watchdog",
-            remedy="leave the option out, and pull the plug once",
+            remedy="leave this option out, and instead pull the plug once",
         )
     return cast("Callable[[], DriveSilence]", method)
 
@@ -74,8 +74,8 @@ def prove_watchdog(
     after = _judged(silence, wanted)
     steps.found["watchdog"] = after
     steps.unchecked.remove("watchdog")
-    line = f"watchdog: motor {wanted} by itself {'' if silence.told is not None else 'at most '}{1e3 * after:.1f} ms "
-    line += f"after our last sign of life; allowed are {1e3 * silence.allowed:g} ms"
+    line = f"watchdog: the motor was {wanted} {'' if silence.told is not None else 'at most '}{1e3 * after:.1f} ms "
+    line += f"after the host's last sign of life; {1e3 * silence.allowed:g} ms is allowed"
     steps.lines.append(line)
     if callback is not None:
         callback(line)
@@ -92,18 +92,19 @@ def _judged(silence: DriveSilence, wanted: str) -> float:
         raise RefusedBenchError(
             "watchdog",
             f"the motor is {still} after {1e3 * silence.asked:.0f} ms without a sign of the host; the drive was set "
-            f"to be {wanted} after {allowed}. It would go on if this program died or the cable was pulled",
+            f"to be {wanted} after {allowed}. The motor would go on if this program died or the cable was pulled",
         )
     if not silence.missed_host:
         raise RefusedBenchError(
             "watchdog",
-            f"the motor was {wanted} after {allowed}, but for another reason: {silence.failure or 'none is named'}",
+            f"the motor was {wanted} after {allowed}, but for another reason: "
+            f"{silence.failure or 'the drive states no reason'}",
         )
     after = silence.asked if silence.told is None else silence.told
     if after > _LATE * silence.allowed:
         raise RefusedBenchError(
             "watchdog",
-            f"the motor was {wanted} only {1e3 * after:.0f} ms after our last sign of life; allowed are "
-            f"{1e3 * silence.allowed:g} ms",
+            f"the motor was {wanted} only {1e3 * after:.0f} ms after the host's last sign of life; "
+            f"{1e3 * silence.allowed:g} ms is allowed",
         )
     return after

@@ -12,7 +12,7 @@ from jointid.hardware.session.watchdog_check import (
     watchdog_travel,
 )
 
-NO_WATCHDOG = "the drive declares no watchdog: it may go on when this program dies, so the bench gets no certificate"
+NO_WATCHDOG = "the drive declares no watchdog: the motor may go on if this program dies, so no certificate is written"
 
 
 def watchdog_of_bench(bench: Bench, drive: Drive, position: float) -> WatchdogTravel | None:

@@ -24,15 +24,16 @@ class MonotonicClock:
     """Monotonic clock of the machine, with absolute deadlines.
 
     Without a real-time priority, a sleep ends 50 µs to some milliseconds late. Absolute deadlines keep these delays
-    from adding up. For closer deadlines, `spin` replaces the end of each sleep by a busy wait, which occupies a core
-    and delays an emulator in the same process.
+    from adding up. For more exact deadlines, `spin` replaces the end of each sleep by a busy wait. A busy wait
+    occupies a core and delays an emulator in the same process.
 
     Parameters
     ----------
     spin : float
         Duration of the busy wait at the end of each sleep [s]. Default 0.
     now, sleep : callable
-        Functions that return the time and that sleep; for tests. Default `time.perf_counter`, `time.sleep`.
+        Functions that return the time [s] and that sleep for a time [s]; for tests. Default `time.perf_counter`,
+        `time.sleep`.
     """
 
     def __init__(
@@ -51,7 +52,7 @@ class MonotonicClock:
         return self._now()
 
     def sleep_until(self, deadline: float) -> None:
-        """Sleep until shortly before the deadline, then wait busily."""
+        """Sleep until shortly before the deadline, then wait in a loop until the deadline."""
         now, spin = self._now, self._spin
         while (left := deadline - now()) > spin:
             self._sleep(left - spin)

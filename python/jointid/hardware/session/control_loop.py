@@ -79,7 +79,7 @@ class Follower:
         self._drive, self._law, self._guard, self._options = drive, law, guard, options
         self._interruptions = interruptions
         self._observer, self._feedback = observer, feedback
-        assert options.resolution is not None, "the session has seen to it"
+        assert options.resolution is not None, "the session checks the resolution before"
         self._estimate = VelocityEstimator(
             options.resolution, options.velocity_counts, options.velocity_time
         )
@@ -263,7 +263,8 @@ class Follower:
         if not self._stamp < stamp < math.inf:
             raise DriveFaultError(
                 "stale_position",
-                f"the drive stamped a sample {stamp:.6f} s, the one before {self._stamp:.6f} s; stamps must increase",
+                f"the drive's time stamp is {stamp:.6f} s, but the previous stamp was {self._stamp:.6f} s; stamps "
+                "must increase",
                 measured=stamp,
                 allowed=self._stamp,
             )
@@ -275,7 +276,7 @@ class Follower:
         if not isinstance(accepted, int | float):
             raise DriveFaultError(
                 "drive_fault",
-                f"the drive's command() returned {accepted!r}; the torque that it accepted is expected",
+                f"the drive's command() returned {accepted!r}; the accepted torque is expected",
             )
         return accepted
 

@@ -18,7 +18,7 @@ class LoggedCycle:
     Attributes
     ----------
     taken, acted : float
-        Times of the sample and of the command [s], by the log's stamps.
+        Times of the sample and of the command [s], from the time stamps of the log.
     position : float
         Position at the output [rad].
     torque : float
@@ -28,7 +28,7 @@ class LoggedCycle:
     current : float
         Active motor current [A]; NaN if not known.
     lost : str
-        Why the cycle has a command but no sample, as a sentence. Default: empty, it has a sample.
+        Sentence that states why the cycle has a command but no sample. Default: empty; the cycle has a sample.
     """
 
     taken: float

@@ -19,15 +19,15 @@ class Reported:
         Name in the drive's manual, e.g. "PL[1]" or "1016h:1".
     meaning : str
     value : float, int, str or None
-        None if the drive did not answer or does not have it.
+        Reported value; None if the drive did not answer or does not have this entry.
     unit : str
-        Unit; empty for a plain number or a text.
+        Unit of the value; empty for a plain number or a text.
     expected : float, int, str or None
         Value that a session needs; None if any value is allowed.
     kind : str
         "speed_limit" if the entry is the drive's own speed limit. Default: empty, for an entry that is only reported.
     output : float or None
-        The speed limit at the joint's output [rad/s]. Default: not known.
+        Speed limit at the joint's output [rad/s]. Default: not known.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Reported:
 
     @property
     def differs(self) -> bool:
-        """Whether the value differs from what a session needs."""
+        """Whether the value differs from the value that a session needs."""
         if self.expected is None:
             return False
         if isinstance(self.expected, float) and isinstance(self.value, int | float):
@@ -67,18 +67,18 @@ class DriveReport:
     drive : str
         Make and address of the drive.
     identity : tuple of Reported
-        Vendor, product, revision, serial number, firmware.
+        Vendor, product, revision, serial number and firmware.
     settings : tuple of Reported
-        Mode and the drive's own limits.
+        Operating mode and the drive's own limits.
     watchdog : tuple of Reported
         Watchdog settings, read back from the drive.
     serial : str
         Serial number; empty if not known.
     motor_on : bool or None
     trouble : str
-        What prevents operation; empty if nothing does.
+        Reason that prevents operation; empty without such a reason.
     position, velocity : float
-        At the output [rad], [rad/s].
+        Position [rad] and velocity [rad/s] at the output.
     reading : float
         Raw reading of the torque sensor, as in a `DriveSample`.
     current : float
@@ -103,12 +103,12 @@ class DriveReport:
 
     @property
     def differences(self) -> tuple[Reported, ...]:
-        """Entries that differ from what a session needs."""
+        """Entries with a value that differs from the value that a session needs."""
         asked = (*self.identity, *self.settings, *self.watchdog)
         return tuple(each for each in asked if each.differs)
 
     def value(self, name: str) -> Value | None:
-        """Return the value of the entry with this name; None if there is none."""
+        """Return the value of the entry with this name; None without such an entry."""
         asked = (*self.identity, *self.settings, *self.watchdog)
         return next((each.value for each in asked if each.name == name), None)
 

@@ -125,8 +125,8 @@ class Foresight:
             return
         raise LimitError(
             "position",
-            f"at {position:.4f} rad and {velocity:.3f} rad/s the joint would stop at {stops:.4f} rad if it were braked "
-            f"now, outside {low:.4f} to {high:.4f} rad",
+            f"at {position:.4f} rad and {velocity:.3f} rad/s, even immediate braking would stop the joint only at "
+            f"{stops:.4f} rad, outside {low:.4f} to {high:.4f} rad",
             measured=stops,
             allowed=high if velocity > 0.0 else low,
         )
@@ -160,8 +160,9 @@ class Foresight:
         if self._against >= self._often:
             raise LimitError(
                 "torque_sign",
-                f"in the last {1e3 * _WATCHED:.0f} ms the joint has gained {gained:.3g} J, though the commanded torque "
-                f"took {-work:.3g} J from it: torque and position have opposite signs, or another force moves it",
+                f"in the last {1e3 * _WATCHED:.0f} ms the joint has gained {gained:.3g} J, although the commanded "
+                f"torque took {-work:.3g} J from the joint: torque and position have opposite signs, or another "
+                "force moves it",
                 measured=gained,
                 allowed=work,
             )
@@ -184,8 +185,8 @@ class Foresight:
         if self._beyond > self._longest:
             raise LimitError(
                 "torque_envelope",
-                f"{torque:.4g} N·m is commanded, but the joint's values need {needed:.4g} N·m; for {self._beyond} "
-                f"cycles the command has been more than {most:.4g} N·m",
+                f"{torque:.4g} N·m is commanded, but by the joint's parameters {needed:.4g} N·m is enough; the command "
+                f"has been above {most:.4g} N·m for {self._beyond} cycles",
                 measured=torque,
                 allowed=most,
             )

@@ -69,7 +69,7 @@ def doubt_of_gains(controller: Controller, joint: MovingJoint | None, period: fl
     text = ", ".join(f"{name} = {value:.3g}" for name, value in gains.items())
     return (
         f"the gains are too high for {inertia:.3g} kg·m² and a period of {1e3 * period:g} ms: gains times period is "
-        f"{share:.2g}, more than {_MOST:g}; these fit, in [session.controller]: {text}"
+        f"{share:.2g}, more than {_MOST:g}; lower gains for [session.controller]: {text}"
     )
 
 

@@ -24,16 +24,16 @@ _BELIEVED = 2.0
 _NEARLY_ALL = 1.98
 
 _WHY_CUT = (
-    "likely: a torque limit, or a PL[1] of the drive, that is too small for this motion; a torque_constant or "
-    "gear_ratio that is not the joint's; a closed brake, a blocked joint, or an encoder that hangs"
+    "likely: a torque limit or PL[1] of the drive that is too small for this motion; a wrong torque_constant or "
+    "gear_ratio; a closed brake, a blocked joint, or an encoder that hangs"
 )
 _WHY_FAST = (
-    "; likely: late or lost cycles, after which the command jumps; [session.limits] torque_rate too small for the "
-    "step of the friction compensation at a reversal; gains too high for the encoder's counts"
+    "; likely: a jump of the command after late or lost cycles; [session.limits] torque_rate too small for the "
+    "step of the friction compensation at a reversal; gains too high for the encoder's resolution"
 )
 _WHY_STANDING = (
     "; the joint file states no friction ([parameters] coulomb, static): if the breakaway torque is more than half "
-    "the torque limit, a healthy joint also stands like this at a slow reversal"
+    "the torque limit, a joint without a fault also rests this long at a slow reversal"
 )
 
 
@@ -198,7 +198,7 @@ class Guard:
         if self._missed > self._limits.missed_deadlines:
             raise LimitError(
                 "missed_deadlines",
-                f"{self._missed} cycles in a row were not done in time, the last one by {1e3 * late:.2f} ms",
+                f"{self._missed} cycles in a row ended late, the last one by {1e3 * late:.2f} ms",
                 measured=self._missed,
                 allowed=self._limits.missed_deadlines,
             )
@@ -230,16 +230,16 @@ class Guard:
         change = abs(self._accepted - self._accepted_there)
         doubt = ""
         if abs(self._speed_there) > self._moving:
-            reason = f"its speed was {abs(self._speed_there):.3f} rad/s before"
+            reason = f"the speed was {abs(self._speed_there):.3f} rad/s before"
         elif change > self._largest_swing:
-            reason = f"the torque has changed by {change:.0f} N·m since"
+            reason = f"the torque has changed by {change:.0f} N·m during these cycles"
             if not self._friction_known:
                 doubt = _WHY_STANDING
         else:
             return
         raise LimitError(
             "repeated_positions",
-            f"the joint has been at {position:.6f} rad for {self._repeated} cycles, though {reason}: the "
+            f"the joint has been at {position:.6f} rad for {self._repeated} cycles, although {reason}: the "
             f"encoder hangs, or the joint is blocked{doubt}",
             measured=self._repeated,
             allowed=self._limits.repeated_positions,
@@ -256,8 +256,8 @@ class Guard:
         if mean > self._largest_difference:
             raise LimitError(
                 "torque_difference",
-                f"the drive gives {torque:.1f} N·m, but {self._accepted:.1f} N·m is commanded; the mean difference "
-                f"over {_COMPARED} samples is {mean:.1f} N·m, more than {self._largest_difference:g} N·m",
+                f"the measured torque is {torque:.1f} N·m, but {self._accepted:.1f} N·m is commanded; the mean "
+                f"difference over {_COMPARED} samples is {mean:.1f} N·m, more than {self._largest_difference:g} N·m",
                 measured=mean,
                 allowed=self._largest_difference,
             )

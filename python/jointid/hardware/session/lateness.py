@@ -76,7 +76,7 @@ class Lateness:
             raise LimitError(
                 "late_share",
                 f"{len(recent)} cycles of the last {LOOKED_BACK:g} s were without a sample in time, more than "
-                f"{self._most:.4g} ({100.0 * limits.late_share:g} %); the last one: {why}",
+                f"{self._most:.4g} ({100.0 * limits.late_share:g} % of the cycles); the last late cycle: {why}",
                 measured=len(recent) / self._span,
                 allowed=limits.late_share,
             )

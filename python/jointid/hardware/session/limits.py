@@ -21,7 +21,7 @@ _ROUNDED = 1e-9  # relative; a torque that was cut at the limit may exceed it by
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SessionLimits:
-    """Limits of a session; each one stops it under its own name.
+    """Limits of a session. A stop has the name of the limit that was exceeded.
 
     Attributes
     ----------
@@ -36,37 +36,39 @@ class SessionLimits:
     tracking_error : float
         Largest difference between reference and position [rad].
     measured_torque : float, optional
-        Largest torque of the active current, if the drive reports it [N·m]. Default: 1.2 times `torque`.
+        Largest torque of the active motor current [N·m], if the drive reports this current. Default: 1.2 times
+        `torque`.
     torque_difference : float, optional
         Largest difference between commanded and measured torque, averaged over ten samples [N·m].
         Default: a quarter of `torque`.
     saturated_samples : int
-        Total number of cycles in which the torque limit cut the command.
+        Allowed total number of cycles in which the torque limit cuts the command.
     missed_deadlines : int
-        Number of cycles in a row that ended after the start of the next one.
+        Allowed number of successive cycles that end after the start of the next cycle.
     repeated_positions : int
-        Equal encoder counts in a row although the joint just moved, or although the torque changed. They show a
-        frozen encoder or a blocked joint. The change must exceed both `torque` and four times the joint file's
-        breakaway torque; the limit is at most 1.98 times `torque`.
+        Allowed number of successive cycles with the same position after a motion or after a change of the torque.
+        More such cycles show a frozen encoder or a blocked joint. The change of the torque must exceed `torque` and
+        four times the joint file's breakaway torque. A change of 1.98 times `torque` is always enough.
     clipped_samples : int
-        Number of torque readings in a row at the end of the sensor's range.
+        Allowed number of successive torque readings at the end of the sensor's range.
     late_samples : int
-        Number of cycles in a row without a sample in time. The last torque is held, and the recording marks
-        them (`Recording.late`).
+        Allowed number of successive cycles without a sample in time. In these cycles the last torque is held. The
+        recording marks them (`Recording.late`).
     late_share : float
-        Share of such cycles in the last 5 s; up to `late_samples` of them are always allowed.
+        Allowed share of cycles without a sample in time, in the last 5 s. Up to `late_samples` such cycles are always
+        allowed.
     torque_envelope : float, optional
-        Largest command for longer than 50 ms, as a multiple of the torque that the reference needs for the joint's
-        friction, inertia and weight. A twentieth of `torque` is added. Default: off; `commission` uses 2 for runs with
-        an identified joint.
+        Largest torque command that may last longer than 50 ms. The value is a multiple of the torque that the
+        reference needs for the joint's friction, inertia and weight. A twentieth of `torque` is added to the limit.
+        Default: off. `commission` uses 2 for runs with an identified joint.
     watchdog_travel : float, optional
-        Largest travel after the program dies, until the joint is at rest [rad]. Default: the coasting of a
-        motor that goes off at once, plus `watchdog_share`.
+        Largest travel [rad] from a failure of the program until the joint is at rest. Default: the travel if the
+        motor goes off at once, plus `watchdog_share`.
 
     Raises
     ------
     InputError
-        A value of the wrong kind or not above 0; an empty position range.
+        A value has the wrong type or is not above 0, or the position range is empty.
     """
 
     position: tuple[float, float] = _NO_WINDOW
@@ -119,7 +121,7 @@ class SessionLimits:
     def watchdog_share(self) -> float:
         """Default travel that the delay of the drive's watchdog may add [rad].
 
-        A tenth of the position range, at least 2°; 10° without a range.
+        This is a tenth of the position range, but at least 2°. Without a position range, this travel is 10°.
         """
         low, high = self.position
         if (low, high) == _NO_WINDOW:
@@ -127,7 +129,7 @@ class SessionLimits:
         return max(_WATCHDOG_SHARE * (high - low), _LEAST_SHARE)
 
     def passed_by(self, peaks: Peaks) -> str:
-        """Return a text on which of position, velocity and torque a motion exceeds; empty if none.
+        """Return a text on the limits of position, velocity and torque that a motion exceeds; empty if there are none.
 
         Parameters
         ----------
@@ -152,7 +154,10 @@ class SessionLimits:
 
     @classmethod
     def of(cls, joint: Joint, **changes: float | tuple[float, float] | None) -> SessionLimits:
-        """Return a joint's limits with some changes. The torque limit is the smaller of those of torque and current."""
+        """Return a joint's limits with some changes.
+
+        The torque limit is the joint's torque limit, or the torque at its current limit if this torque is smaller.
+        """
         known = joint.limits
         values: dict[str, object] = {}
         if known.position is not None:

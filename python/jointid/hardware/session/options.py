@@ -31,22 +31,22 @@ class SessionOptions:
     settle : float
         Time at rest at the start [s]; at most 5 million periods.
     velocity_counts : int
-        Encoder counts until a new velocity estimate (thesis, 6.3.1).
+        Number of encoder counts between two velocity estimates (thesis, 6.3.1).
     velocity_time : float
         Longest time between two velocity estimates [s].
     resolution : float, optional
-        Output angle of an encoder count [rad]. Default: the drive's own `resolution`.
+        Output angle of one encoder count [rad]. Default: the drive's own `resolution`.
     answer_timeout : float, optional
-        Longest wait for the drive's state in a cycle [s]; later the position is stale. Default: three
+        Longest wait for the drive's state in a cycle [s]. After this time, the position is stale. Default: three
         quarters of a period.
     acknowledge_damped : bool
-        Whether to start with a drive that damps, holds or brakes its motor, and does not switch it off, when the host
-        fails.
+        Whether to start with a drive that does not switch its motor off when the host fails, but damps, holds or
+        brakes it.
 
     Raises
     ------
     InputError
-        A value of the wrong kind or outside its range.
+        A value has the wrong type or is outside its range.
     """
 
     period: float = 2e-3
@@ -104,8 +104,8 @@ def check_cycles(name: str, time: float, period: float) -> None:
     """
     if time > MOST_CYCLES * period:
         raise InputError(
-            f"at most {MOST_CYCLES * period:g} s is expected with a period of {period:g} s: "
-            f"{MOST_CYCLES} cycles",
+            f"at most {MOST_CYCLES * period:g} s ({MOST_CYCLES} cycles) is expected with a "
+            f"period of {period:g} s",
             argument=name,
             value=time,
         )
@@ -124,7 +124,7 @@ def with_resolution(options: SessionOptions, drive: object) -> SessionOptions:
     resolution = getattr(drive, "resolution", None)
     if resolution is None:
         raise InputError(
-            "not known: neither the session's options nor the drive give the output angle of an encoder count",
+            "not known: neither the session's options nor the drive states the output angle per encoder count",
             argument="resolution",
         )
     return replace(options, resolution=float(resolution))

@@ -45,7 +45,7 @@ def stop_of(
     if end.failure:
         message = f"{message}; the drive reports: {end.failure}"
     if end.motor_off is False:
-        message = f"{message}; THE MOTOR WAS NOT SEEN OFF"
+        message = f"{message}; THE DRIVE DID NOT CONFIRM THAT THE MOTOR IS OFF"
     return Stop(
         limit=limit,
         phase="check" if follower is None else follower.phase,

@@ -30,9 +30,9 @@ class RealTimeOptions:
     lock_memory : bool
         Whether to keep all memory out of swap. Needs CAP_IPC_LOCK or `ulimit -l unlimited`.
     cpus : tuple of int, optional
-        Processors that the loop may run on.
+        Numbers of the processors on which the control loop may run.
     timer_slack : float, optional
-        Largest delay of the end of a sleep [s]. Default: the system's, 50e-6 on Linux.
+        Largest delay at the end of a sleep [s]. Default: the system's value, 50e-6 on Linux.
     freeze_garbage : bool
         Whether to stop garbage collection during the session.
     """
@@ -91,7 +91,9 @@ class RealTime:
             if not asked:
                 continue
             if not sys.platform.startswith("linux"):
-                self.notes.append(f"{name}: only on Linux, this is {sys.platform}")
+                self.notes.append(
+                    f"{name}: available only on Linux, but this system is {sys.platform}"
+                )
                 continue
             try:
                 step()

@@ -43,11 +43,13 @@ def check_output(path: Path) -> None:
     if path.suffix != ".csv":
         raise InputError("a session writes .csv", argument="output", value=str(path))
     if not path.parent.is_dir():
-        raise InputError("its folder does not exist", argument="output", value=str(path))
+        raise InputError(
+            "the folder of this file does not exist", argument="output", value=str(path)
+        )
     for each in (path, path.with_suffix(".log")):
         if each.exists():
             raise InputError(
-                "the file exists, and a session overwrites nothing",
+                "the file exists, and a session does not overwrite files",
                 argument="output",
                 value=str(each),
             )

@@ -62,29 +62,31 @@ __all__ = [
 class Session:
     """One run on a joint: check, enable, move to the start, settle, run, stop.
 
-    However it ends, the session commands zero torque, switches the motor off, and asks the drive to confirm it.
+    At the end, also after an error, the session commands zero torque and switches the motor off. Then it asks the
+    drive to confirm that the motor is off.
 
     Parameters
     ----------
     drive : Drive
-        Any object with a drive's methods; `open_drive` returns that of a bench.
+        Any object with the methods of `Drive`. `open_drive` opens the drive of a bench.
     controller : OpenLoop, Pd, Pid, CompensatedPid, AdaptiveRobust or LugreObserver
-        A controller of the simulator; the core computes its law.
+        A controller of the simulator. The core computes its control law.
     trajectory : Trajectory
     limits : SessionLimits
     options : SessionOptions
     output : path, optional
-        The recording goes to this .csv, the frames to a .log with the same name.
+        Name of the .csv file of the recording. The frames are written to a .log file with the same name.
     observer : callable, optional
-        Called with (phase, time, sample, reference, torque) in each cycle; for a console or a plot. An exception
-        ends the session.
+        Function that is called with (phase, time, sample, reference, torque) in each cycle, e.g. for a plot. An
+        exception in this function ends the session.
     real_time : RealTimeOptions, optional
-        Settings of the operating system while the motor is on; the recording's metadata list those that are not
-        granted. Default: none.
+        Settings of the operating system while the motor is on. The recording's metadata list the settings that the
+        system did not grant. Default: none.
     joint : Joint, optional
         Joint of the limits that predict the motion from inertia, friction and weight. Default: the drive's `joint`.
     designed_for : DesignedFor, optional
-        Joint of a designed motion; the recording's metadata say how the session differs. Default: not known.
+        Joint, controller and period that the motion was designed for. The recording's metadata list the differences
+        of the session. Default: not known.
 
     Attributes
     ----------
@@ -131,12 +133,12 @@ class Session:
         self.recording: Recording | None = None
 
     def check(self) -> list[str]:
-        """Connect the drive and return the reasons not to enable the motor, which stays off.
+        """Connect the drive and return the reasons not to enable the motor. The motor stays off.
 
         Returns
         -------
         list of str
-            Empty if all pre-flight checks pass.
+            Reasons as sentences; empty if all pre-flight checks pass.
 
         Raises
         ------
@@ -172,7 +174,7 @@ class Session:
         Returns
         -------
         Recording
-            Recording of the run; `metadata` has timing, limits, the drive's identity, and whether the motor is
+            Recording of the run. Its `metadata` has timing, limits, the drive's identity, and whether the motor is
             confirmed off.
 
         Raises
@@ -182,10 +184,11 @@ class Session:
         SessionRefusedError
             A pre-flight check failed, or the drive raised a DriveFaultError or an OSError during the check.
         SessionStoppedError
-            A limit, a fault or the user stopped the session; the error holds the recording.
+            A limit, a fault or the user stopped the session. The error holds the recording.
         Exception
-            A bug in drive, controller, observer or session. It is raised again, with a note on how the session ended,
-            after the motor is off and the recording is closed; `recording` has the samples.
+            A bug in drive, controller, observer or session. The exception is raised again after the motor is off and
+            the recording is closed. A note in the exception states how the session ended. The attribute `recording`
+            has the samples.
 
         Examples
         --------
@@ -223,7 +226,9 @@ class Session:
             if cause is None and interruptions.reason is not None:
                 cause = LimitError("user", interruptions.reason)  # requested at the end of the run
             if cause is None and self._end is not None and self._end.motor_off is False:
-                cause = DriveFaultError("drive_fault", "the run is done, but the motor is not off")
+                cause = DriveFaultError(
+                    "drive_fault", "the run has ended, but the motor is not off"
+                )
             stop = None if cause is None else stop_of(cause, moment, self._follower, self._end)
             if recorder is not None:
                 try:

@@ -9,27 +9,29 @@ from jointid.hardware.session.motor_state import MotorState, is_off, state_of
 
 @dataclass(frozen=True, slots=True, kw_only=True, init=False)
 class DriveSilence:
-    """Reaction of a drive to a silent host, its motor on at zero torque.
+    """Reaction of a drive to a silent host, with the motor on at zero torque.
 
-    The drive's method `fall_silent` returns it. The method sends nothing for twice the watchdog's time, and then
-    asks the drive.
+    The drive's method `fall_silent` returns this object. The method sends nothing for twice the watchdog time, and
+    then requests the drive's state.
 
     Attributes
     ----------
     allowed : float
         Watchdog time set in the drive [s].
     state : {"off", "damped", "held", "braked", "on"} or None
-        State of the motor that the drive reports; None if it does not answer.
+        State of the motor that the drive reports; None if the drive does not answer.
     told : float or None
-        Time from the host's last sign of life until the drive reported the missing host [s]; None if it did not.
+        Time from the host's last sign of life until the drive reported the missing host [s]; None without such a
+        report.
     asked : float
-        Time from then until the drive was asked [s].
+        Time from the host's last sign of life until the drive's state was requested [s].
     missed_host : bool
-        Whether the drive names the missing host as the reason.
+        Whether the drive reports the missing host as the reason of its reaction.
     failure : str
-        Reason that the drive names. Default: none.
+        Reason that the drive reports. Default: empty.
     motor_off : bool or None
-        Whether `state` is "off". As an argument, the former name of `state`: True is "off", False is "on".
+        Whether `state` is "off". As an argument, `motor_off` is the former name of `state`: True means "off", False
+        means "on".
     """
 
     allowed: float
@@ -57,5 +59,5 @@ class DriveSilence:
 
     @property
     def motor_off(self) -> bool | None:
-        """Whether the drive reports that its motor is off; None if it does not answer."""
+        """Whether the drive reports that its motor is off; None if the drive does not answer."""
         return is_off(self.state)

@@ -36,8 +36,8 @@ def problems_on_paper(
     load = drive.bus_load(period)
     if not load <= FULLEST_BUS:
         yield (
-            f"a cycle takes {100.0 * load:.0f} % of the bus, more than {100.0 * FULLEST_BUS:.0f} %; take a "
-            "longer period"
+            f"the bus load is {100.0 * load:.0f} %, more than {100.0 * FULLEST_BUS:.0f} %; state a longer "
+            "period"
         )
     if trajectory.duration < _FEWEST * period:
         yield (
@@ -53,8 +53,8 @@ def problems_on_paper(
     low, high = limits.position
     if not (wanted.min() >= low and wanted.max() <= high):
         yield (
-            f"the trajectory goes from {wanted.min():.4f} to {wanted.max():.4f} rad, outside {low:.4f} "
-            f"to {high:.4f} rad"
+            f"the trajectory goes from {wanted.min():.4f} to {wanted.max():.4f} rad, outside the window of "
+            f"{low:.4f} to {high:.4f} rad"
         )
     fastest = float(np.abs(speed).max())
     if fastest > limits.velocity:
@@ -102,8 +102,8 @@ def check_approach(distance: float, options: SessionOptions) -> None:
         return
     least = 0.5 * math.pi * abs(distance) / longest
     raise InputError(
-        f"at least {least:.3g} rad/s is expected for the {abs(distance):.3g} rad to the start: "
-        f"a session has at most {MOST_CYCLES} cycles",
+        f"at least {least:.3g} rad/s is expected, because the start is {abs(distance):.3g} rad away "
+        f"and a session has at most {MOST_CYCLES} cycles",
         argument="approach_velocity",
         value=options.approach_velocity,
     )

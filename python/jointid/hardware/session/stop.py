@@ -12,26 +12,26 @@ from jointid.recording.recording import Recording
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Stop:
-    """Why a session ended early.
+    """Reason why a session ended early.
 
     Attributes
     ----------
     limit : str
-        Name of the limit: a field of `SessionLimits`, or "stale_position", "drive_fault", "heartbeat_lost" (of the
-        drive), "host_heartbeat_lost" (of the host, as the drive reports), "bus", "recording" (it cannot be written or
-        created), "sensor" (a reading that is not finite), "user", "error" (another exception).
+        Name of the stop: a field of `SessionLimits`, a kind of `DriveFaultError`, or one of four others.
+        "torque_sign": the joint gained energy against the torque. "recording": the file of the recording cannot be
+        created or written. "user": the user stopped the session. "error": another exception stopped the session.
     phase : str
-        "check", "enable", "move", "settle" or "run".
+        Phase of the session: "check", "enable", "move", "settle" or "run".
     time : float
         Time since the start of the phase [s].
     moment : float
-        Time on the drive's clock, which also stamps the frames [s].
+        Time on the drive's clock [s]; the frames have time stamps of this clock.
     message : str
-        What happened, with numbers.
+        One sentence on the cause, with numbers.
     measured, allowed : float or None
-        Value beyond the limit, and the limit, in the limit's unit; None without a number.
+        Value beyond the limit, and this limit, in the limit's unit; None without a number.
     motor_off : bool or None
-        Whether the drive confirmed that its motor is off; None if it cannot be asked.
+        Whether the drive confirmed that its motor is off; None if the drive cannot report this.
     """
 
     limit: str

@@ -18,7 +18,7 @@ _OWNER = "watchdog"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Watchdog:
-    """How a drive stops its motor when the host fails; the drive declares it.
+    """Watchdog that a drive declares: how the drive stops its motor when the host fails.
 
     Attributes
     ----------
@@ -34,7 +34,7 @@ class Watchdog:
     Raises
     ------
     InputError
-        A value of the wrong kind, or an unknown value.
+        A value has the wrong type or is unknown.
 
     Examples
     --------

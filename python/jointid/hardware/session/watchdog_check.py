@@ -81,10 +81,10 @@ class WatchdogTravel:
     def problem(self) -> str:
         """Return the reason why the watchdog is too slow, with the longest time that passes."""
         if self.longest is None:
-            remedy = "no time passes; move more slowly, or state another"
+            remedy = "no watchdog time is short enough; move more slowly, or state another"
         else:
             remedy = (
-                f"the longest time that passes is {self.longest:g} s; give the drive no more than that, or state "
+                f"the longest acceptable time is {self.longest:g} s; set the drive to at most this time, or state "
                 "another"
             )
         return (
@@ -93,15 +93,17 @@ class WatchdogTravel:
         )
 
     def _way(self) -> str:
-        until = " until then, and coasts on (no friction is stated)" if self.coasts else ""
+        until = (
+            " until the watchdog acts, and coasts on (no friction is stated)" if self.coasts else ""
+        )
         source = (
-            "as watchdog_travel states"
+            "stated as watchdog_travel"
             if self.stated
-            else f"{self._angle(self.at_once)} if the motor went off at once, and a share of the window"
+            else f"{self._angle(self.at_once)} if the motor is off at once, plus a share of the window"
         )
         return (
             f"the joint goes up to {self._angle(self.travel)} after the host's death{until}; "
-            f"{self._angle(self.allowed)} are allowed ({source})"
+            f"{self._angle(self.allowed)} is allowed ({source})"
         )
 
     def _angle(self, value: float) -> str:
@@ -184,8 +186,8 @@ def watchdog_problems(travel: WatchdogTravel, options: SessionOptions) -> Iterat
         )
     elif watchdog.then != "off" and not options.acknowledge_damped:
         yield (
-            f"when the host is gone, the drive does not switch its motor off, which is then {watchdog.then}; if you "
-            "accept that, set acknowledge_damped = true under [session]"
+            f"when the host is gone, the drive does not switch its motor off; the motor is then {watchdog.then}; if "
+            "you accept this state, set acknowledge_damped = true under [session]"
         )
     if options.period * _PERIODS > watchdog.time * (1.0 + 1e-9):
         yield (

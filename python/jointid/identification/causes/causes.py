@@ -213,7 +213,7 @@ def attributed(
     """
     if signals and len(problem.recordings) > 1:
         raise InputError(
-            "further signals need an estimate of one recording",
+            "further signals can be used only with an estimate of one recording",
             argument="signals",
             value=list(signals),
         )
@@ -231,7 +231,7 @@ def attributed(
         wrong = np.flatnonzero(~np.isfinite(series))
         if wrong.size:
             raise InputError(
-                f"its values must be finite; {wrong.size} of {length} are not, the first at sample {wrong[0]}",
+                f"all values must be finite; {wrong.size} of {length} values are not, the first at sample {wrong[0]}",
                 argument=f"signals.{name}",
                 value=float(series[wrong[0]]),
             )

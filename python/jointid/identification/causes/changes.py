@@ -61,7 +61,7 @@ def of_a_scale(
     ]
     if not moved:
         return f"if the torque is wrong, the friction changes by {signed_percent(-share / (1.0 + share))}"
-    text = f"with the inertia of {shown:.3g} {inertia.unit} that the torque shows instead"
+    text = f"with the inertia that fits the torque ({shown:.3g} {inertia.unit})"
     text += f", {', '.join(moved).replace(' by ', ' changes by ', 1)}"
     # A wrong factor of the torque scales all other values by it.
     scale = f"; if the torque is wrong instead, the friction changes by {signed_percent(-share / (1.0 + share))}"

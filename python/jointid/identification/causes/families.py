@@ -27,7 +27,11 @@ _HELD = Action(
     "call", {"torque_hold": "zoh"}, text="if the torque is a command that is held between samples"
 )
 _EARLY = "the sampling times of torque and position, and the backlash"
-_SLOW = (Action("record", text="motion that passes zero speed faster, and slow motion separately"),)
+_SLOW = (
+    Action(
+        "record", text="motion that passes zero speed quickly, and slow motion in another recording"
+    ),
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -68,7 +72,7 @@ class Family:
         """Finding type of the cause."""
         return FindingType(
             code=self.name,
-            meaning=f"{self.meaning} explains the residual, also on held-out data. Info if harmless",
+            meaning=f"{self.meaning} explains the residual on held-out data. Info: the cause hardly changes the values",
             advice=self.remedy,
             picture="windows",
         )
@@ -105,7 +109,7 @@ def against_delay(fit: FittedBalance, cause: Attributed) -> tuple[Action, ...]:
     if detail == FILTERED:
         return (Action("call", {"columns": {"velocity": None}}, function="load"),)
     early = -float(cause.coefficients[0]) / fit.sample_period
-    look = Action("inspect", text=f"when the {detail} is sampled and logged")
+    look = Action("inspect", text=f"when the {detail} is sampled, and when it is logged")
     if detail == "torque" and early > 0.0:  # a torque cannot be early
         look = Action("inspect", text=_EARLY)
     unheld = detail == "torque" and not fit.torque_held
@@ -144,7 +148,7 @@ FAMILIES: tuple[Family, ...] = (
         remedy="record motion about one pose",
         candidates=of.inertia_varies,
         advice=_always(
-            Action("record", text="motion about one pose, or with a gentler acceleration"),
+            Action("record", text="motion about one pose, or with smaller acceleration"),
             Action("inspect", text="whether other joints change the inertia"),
         ),
         size=sizes.range_of,
@@ -186,7 +190,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         name="stribeck_exponent",
-        meaning="friction that decays differently with speed",
+        meaning="low-speed friction with another Stribeck exponent",
         remedy="use the model stribeck_general, which has a free exponent",
         candidates=low_speed.slow_motion,
         advice=_against_slow_motion,
@@ -230,7 +234,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="asymmetry",
         meaning="friction that differs between directions",
-        remedy="add asymmetric to the model",
+        remedy="identify the friction of each direction: `stribeck:asymmetric`",
         candidates=of.asymmetry,
         advice=_against_asymmetry,
         changes=lambda fit, cause: (
@@ -257,7 +261,7 @@ FAMILIES: tuple[Family, ...] = (
     Family(
         name="other_signal",
         meaning="torque that follows another signal",
-        remedy="record while everything else is at rest",
+        remedy="record while all other axes are at rest",
         candidates=of.other_signal,
         advice=_always(Action("record", text="while everything else is at rest")),
     ),
@@ -271,7 +275,7 @@ FAMILIES: tuple[Family, ...] = (
                 "inspect",
                 text="units, signs, zero position, load and temperature of that recording",
             ),
-            Action("inspect", text="the values of each recording, identified alone"),
+            Action("inspect", text="the values from each recording alone"),
         ),
     ),
     Family(

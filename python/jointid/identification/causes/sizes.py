@@ -90,7 +90,7 @@ def drift_of(fit: FittedBalance, cause: Attributed, _: Mapping[str, Delay]) -> S
     change, minute = rate * fit.duration_of_recording, 60.0 * rate
     over, rated = f"{100.0 * change:+.3g} %", f"{100.0 * minute:+.3g} % per minute"
     return Size(
-        text=f"{over} over the recording, {rated} relative to the middle",
+        text=f"{over} over the recording, {rated} relative to the value in mid-recording",
         numbers={"change": Measured(change), "change_a_minute": Measured(minute)},
     )
 

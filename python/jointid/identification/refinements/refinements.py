@@ -96,7 +96,8 @@ def _faster(problem: Problem, windows: Windows, min_speed: float) -> Problem:
         problem.parts(windows)  # raises if the minimum speed is not the cause
         unit = "rad/s" if problem.recordings[0].kind == "revolute" else "m/s"
         raise InputError(
-            f"it leaves too little motion: the joint moves at up to {problem.peak_speed:.3g} {unit}",
+            "the recording has too little motion above this speed; the joint's top speed is "
+            f"{problem.peak_speed:.3g} {unit}",
             argument="min_speed",
             value=min_speed,
             remedy=Action("call", {"min_speed": 0}),

@@ -100,7 +100,7 @@ class ComputedBounds:
         extent = size(self._lowest[:, index])
         if extent == 0.0:
             raise InputError(
-                "the recording does not excite it at all",
+                "this parameter has no effect in the recorded motion",
                 argument=name,
                 place="parameters",
                 remedy=Action("call", {"parameters": {name: ...}}, text="which fixes it"),
@@ -108,7 +108,7 @@ class ComputedBounds:
         level = size(penalty.target)
         if level == 0.0:
             raise InputError(
-                "it is zero throughout, so there is nothing to identify",
+                "all samples of this signal are zero, so nothing can be identified",
                 argument="torque",
                 place="recording",
             )

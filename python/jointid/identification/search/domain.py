@@ -101,10 +101,10 @@ def domain_for(
             high = bounds[1] if high is None else high
         if not low < high:
             raise InputError(
-                f"there is no room between min {low:g} and max {high:g}",
+                f"its min {low:g} is not below its max {high:g}",
                 argument=name,
                 place="parameters",
-                remedy="widen the bounds, or fix it with a number",
+                remedy="widen the bounds, or fix the parameter with a number",
             )
         lower[index], upper[index] = low, high
     _refuse_zero_gain(penalty, names, lower, upper)
@@ -138,8 +138,8 @@ def _refuse_zero_gain(
     index = names.index("sensor_gain")
     if lower[index] <= 0.0 <= upper[index]:
         raise InputError(
-            f"its bounds, {lower[index]:g} to {upper[index]:g}, contain 0, where the residual of the sensor is not "
-            "defined",
+            f"its bounds, {lower[index]:g} to {upper[index]:g}, contain 0, but the sensor residual is not defined for "
+            "a gain of 0",
             argument="sensor_gain",
             place="parameters",
             remedy=(

@@ -123,7 +123,7 @@ def _swing(penalty: _core.Penalty, columns: Array) -> float:
     spread = float(np.std(reading))
     if spread <= 1e-9 * max(abs(mean), 1e-300):
         raise InputError(
-            "its reading does not vary, so its gain cannot be identified",
+            "the reading never changes, so the sensor gain cannot be identified",
             argument="sensor",
             place="recording",
             remedy="check the column, or leave the sensor out",

@@ -102,21 +102,21 @@ def _columns_again(problem: Problem, penalty: _core.Penalty, shapes: Array) -> A
 
 def _no_signal(name: str) -> InputError:
     return InputError(
-        "its signal does not exceed its own noise in these recordings",
+        "the signal of this term changes less than its noise in these recordings",
         argument="terms",
         value=name,
-        remedy=("leave it out", Action("record", text="motion in which it changes")),
+        remedy=("leave the term out", Action("record", text="motion in which the signal changes")),
     )
 
 
 def _refused(name: str, others: list[str], relation: str) -> InputError:
     alike = " and ".join(others)
     return InputError(
-        f"it is {relation} {alike} throughout these recordings, so the data cannot divide the torque between them",
+        f"this term is always {relation} {alike} in these recordings, so the data cannot separate the terms",
         argument="terms",
         value=name,
         remedy=(
-            "leave one of them out",
+            "leave one of these terms out",
             Action("call", {"parameters": {name: ...}}, text="which fixes it"),
         ),
     )

@@ -126,7 +126,10 @@ class Engine:
         if abs(self.form(best) - expected) <= _RELATIVE * expected + _ABSOLUTE * size:
             return replace(outcome, balance=balance)
         found = _core.polish(direct, domain.lower, domain.upper, best)
-        message = f"{outcome.message}; a polish by the direct sum followed, because the two sums did not agree"
+        polished = (
+            "the direct sum over all samples gave another penalty, so a polish of this sum followed"
+        )
+        message = f"{outcome.message}; {polished}"
         return replace(outcome, best=found.best, message=message)
 
 
@@ -171,7 +174,7 @@ def separable(
         return _found(projected.found, f"{_effort(projected.found)}, by projection")
     ready = engine()
     found = _core.minimise_separable(ready.form, lower, upper, threads=search.threads)
-    message = "least squares, because no shape is searched"
+    message = "linear least squares, because the model has no free shape parameter"
     if free_shapes(penalty, domain):
         message = f"{_effort(found)}, not by projection: {projected.reason}"
     return ready.verified(_found(found, message), domain)
@@ -281,7 +284,7 @@ def _finished(
             return best, "stopped", f"the polish did not converge after {effort}"
         return best, "converged", effort
     if result.stop == _core.Stop.generations:
-        return result.best, "stopped", f"reached its limit of {effort} without a polish"
+        return result.best, "stopped", f"the search reached its limit of {effort}, without a polish"
     return result.best, "converged", effort
 
 

@@ -35,29 +35,29 @@ class Search:
     Parameters
     ----------
     method : {"separable", "ga", "random"}, optional
-        "separable" eliminates the linear parameters exactly and searches only the shapes. "ga" runs a genetic
-        algorithm, then a local polish; with the model "stribeck_general" and 12,000 samples, `identify` then takes
-        seven times as long. "random" is a random search for comparison, with the budget of the genetic algorithm and
-        no polish. Default: "ga" if `ga`, `callback`, `checkpoint` or `resume` is set, because "separable" does
-        not use them; otherwise "separable".
+        "separable" eliminates the linear parameters exactly and searches only the shape parameters. "ga" runs a
+        genetic algorithm and then a local search. With the model "stribeck_general" and 12,000 samples, "ga" takes
+        seven times as long as "separable". "random" is a random search for comparison, with the evaluations of the
+        genetic algorithm and no local search. Default: "ga" if `ga`, `callback`, `checkpoint` or `resume` is set,
+        otherwise "separable".
     ga : GaOptions or {"default", "thesis", "thesis_code"}, optional
         Settings of the genetic algorithm. Default "default".
     seed : int
         Random seed. The same seed gives bit-identical results for any number of threads. Default 0.
     threads : int
-        Number of threads; 0 (default): all.
+        Number of threads. Default 0: all processors.
     callback : callable, optional
-        Function that is called with each `Generation`; if it returns True, the search stops. "separable" has no
-        generations and does not call it.
+        Function that the search calls with each `Generation`. If the function returns True, the search stops.
+        "separable" has no generations and does not call the function.
     checkpoint : path, optional
-        File for the state of the genetic search. It is replaced every 50 generations and at the end.
+        File for the state of the genetic search. The search replaces the file every 50 generations and at the end.
     resume : path, optional
-        Checkpoint to continue from. The result is bit-identical to that of an uninterrupted search.
+        Checkpoint from which the search continues. The result is bit-identical to that of an uninterrupted search.
 
     Raises
     ------
     InputError
-        An invalid field, or a checkpoint with a method other than "ga".
+        A field is invalid, or `checkpoint` or `resume` is set with a method other than "ga".
 
     Examples
     --------
@@ -98,7 +98,7 @@ class Search:
                 require_path(name, getattr(self, name))
                 if self.chosen_method != "ga":
                     raise InputError(
-                        "only the method ga has a checkpoint to write or to resume",
+                        "only the method ga can write or resume a checkpoint",
                         argument="method",
                         value=self.method,
                     )
@@ -116,7 +116,7 @@ class Search:
         Raises
         ------
         InputError
-            Another type, or an unknown method.
+            The value has a wrong type, or the method is unknown.
         """
         if isinstance(value, Search):
             return value
@@ -130,7 +130,7 @@ class Search:
 
     @property
     def chosen_method(self) -> Method:
-        """Method that runs: "ga" if no method is set but a field that "separable" does not use."""
+        """Method that runs: `method` if it is set, otherwise its default."""
         if self.method is not None:
             return self.method
         stated = (self.ga, self.callback, self.checkpoint, self.resume)
@@ -138,6 +138,6 @@ class Search:
 
     @property
     def genetic(self) -> _core.GaOptions:
-        """Settings of the genetic algorithm; those of the preset if `ga` is a name."""
+        """Settings of the genetic algorithm; the preset's settings if `ga` is the name of a preset."""
         ga = self.ga or "default"
         return PRESETS[ga]() if isinstance(ga, str) else ga

@@ -56,7 +56,7 @@ def parameter_bounds(
     for name in changes or {}:
         if name not in names and not any(other.startswith(f"{name}[") for other in names):
             raise InputError(
-                f"it is not part of this identification; its parameters are {', '.join(names)}",
+                f"this identification has no such parameter; its parameters are {', '.join(names)}",
                 argument=name,
                 place="parameters",
             )

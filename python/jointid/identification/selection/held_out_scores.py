@@ -74,7 +74,7 @@ def _refusal(fitted: Fitted, columns: ShapedColumns, candidate: Candidate) -> st
         return ""
     best = int(np.argmin(fitted.penalty))
     if columns.free_shape and best in (0, len(columns.shapes) - 1):
-        return "its shape ends on a bound"
+        return "its shape parameter ends on a bound"
     left = fitted.coefficients[best]
     spread = np.square(left - left.mean(axis=0)).sum(axis=0)
     errors = np.sqrt((len(left) - 1) / len(left) * spread)  # the jackknife over blocks

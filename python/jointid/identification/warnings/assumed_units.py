@@ -35,7 +35,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     if signals:
         advice = [_IN_HEADER]
         if units:
-            purpose = "or the units that they have"
+            purpose = "or with the true units"
             advice.insert(0, Action("call", {"units": units}, text=purpose, function="load"))
         yield ASSUMED_UNITS.finding(
             f"no unit is stated for {listed(signals, _ROOM)}, SI is assumed",
@@ -63,7 +63,8 @@ def _shows_seconds(inspected: Inspected, assumed: Sequence[str]) -> bool:
 def _sizes(recording: Recording, signals: Sequence[str]) -> list[str]:
     """Return the largest torque or current in the assumed unit, so that a reader sees whether it is possible."""
     return [
-        f"in this unit, {name} is up to {float(np.abs(getattr(recording, name)).max()):.4g} {recording.unit(name)}"
+        f"in the assumed unit, {name} is up to {float(np.abs(getattr(recording, name)).max()):.4g} "
+        f"{recording.unit(name)}"
         for name in DRIVE
         if name in signals and getattr(recording, name) is not None
     ]

@@ -18,7 +18,7 @@ from jointid.identification.warnings.no_friction import without_friction
 AT_BOUND = FindingType(
     code="at_bound",
     meaning="a parameter ended on its bound. The parameter has no standard error, so do not use its value. Info: a "
-    "friction parameter is 0, and its true value is at most a tenth of all friction",
+    "friction parameter is 0, and can cause at most a tenth of all friction",
     advice="widen the bound, or check units, signs and gear ratio",
 )
 
@@ -46,8 +46,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
             measured[f"{p.name}.share"] = Measured(share)
         if small and limit == 0.0:
             yield AT_BOUND.finding(
-                f"{p.name} ended on its bound, 0; the true value is at most {two_digits(may_be)} {p.unit}, "
-                f"{percent(share or 0.0)} of all friction",
+                f"{p.name} ended on its bound, 0, but may be up to {two_digits(may_be)} {p.unit} "
+                f"({percent(share or 0.0)} of all friction)",
                 evidence=measured,
                 parameters=(p.name,),
                 severity="info",
@@ -63,7 +63,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         yield AT_BOUND.finding(
             f"{p.name} ended at its {side} bound {limit:.6g} {p.unit}".rstrip(),
             *advice,
-            details="the best value is beyond the bound, or the data do not determine it; other values are affected",
+            details="the best value is beyond the bound, or not determined by the data; other values are affected",
             evidence=measured,
             parameters=(p.name,),
         )

@@ -53,10 +53,10 @@ def _missed(evidence: Evidence) -> bool:
 def _finding(cause: Cause, concerned: tuple[str, ...], *, missed: bool) -> Finding:
     measured = cause.evidence(cause.relative)
     beside = [name for name in concerned if name not in cause.relative]
-    also = "also makes {} uncertain"
+    also = "it also makes {} uncertain"
     if cause.name == "wrong_scale":
-        also = "also scales {}, if the torque is wrong"
-    does = f"; it {also.format(listed(beside))}" if beside else ""
+        also = "if the torque is wrong, this error also scales {}"
+    does = f"; {also.format(listed(beside))}" if beside else ""
     severity: Severity = "blocking" if _is_gross(cause, missed) else "warning"
     return TYPES[cause.name].finding(
         cause.title,

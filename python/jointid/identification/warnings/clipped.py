@@ -18,8 +18,8 @@ from jointid.identification.warnings.motion_advice import DESIGNED, other_motion
 TORQUE_SATURATED = FindingType(
     code="torque_saturated",
     meaning="the torque is at its limit in more than 1 % of the samples, and reaches this limit "
-    "more than once. A commanded step does not count",
-    advice=f"record the torque that the drive applied, or record gentler motion{DESIGNED}",
+    "more than once. Steps of a torque command do not count as saturation",
+    advice=f"record the torque that the drive applied, or record motion with less torque{DESIGNED}",
 )
 SENSOR_CLIPPED = FindingType(
     code="sensor_clipped",
@@ -101,7 +101,9 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
             yield SENSOR_CLIPPED.finding(
                 f"the sensor is at its limit in {percent(share)} of the samples",
                 # This advice is not the first, because a design cannot always keep the sensor's range.
-                Action("inspect", text="the sensor's range: widen it, or load the link less"),
+                Action(
+                    "inspect", text="the sensor's range, and widen this range or load the link less"
+                ),
                 other_motion(
                     evidence,
                     "motion with a smaller load on the link",

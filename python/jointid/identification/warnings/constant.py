@@ -14,7 +14,8 @@ from jointid.identification.warnings.inspection import DRIVE, Inspected
 CONSTANT_SIGNAL = FindingType(
     code="constant_signal",
     severity="blocking",
-    meaning="torque or sensor never changes while the joint moves, or is frozen in more than 5 % of the samples",
+    meaning="while the joint moves, the torque or the sensor reading stays constant: in the whole log, or in more than "
+    "5 % of the samples",
     advice="check the signal's cable and its mapping",
 )
 _FROZEN = 0.05  # share of the samples in frozen runs

@@ -13,7 +13,8 @@ from jointid.identification.warnings.undetermined import listed
 CONTRADICTED = FindingType(
     code="cross_check",
     severity="blocking",
-    meaning="the cross-check, a plain least squares on the filtered signals, gives other values",
+    meaning="the cross-check, a plain least squares on the filtered signals, gives values that differ from "
+    "the estimate",
     advice="plot position, velocity and torque over time, and find out whether identification or cross-check is wrong",
 )
 
@@ -34,7 +35,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     yield CONTRADICTED.finding(
         f"the cross-check disagrees: {shown}",
         Action("inspect", text="position, velocity and torque over time"),
-        details="a plain least squares on the recorded signals gives these values"
+        details="the first value of each parameter is from a plain least squares on the recorded signals"
         + ("" if shown == ", ".join(pairs) else f"; complete list: {', '.join(pairs)}"),
         evidence=measured,
         parameters=second.contradicted,

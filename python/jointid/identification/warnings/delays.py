@@ -13,20 +13,21 @@ from jointid.identification.warnings.evidence import Evidence
 
 SIGNAL_LAG = FindingType(
     code="signal_lag",
-    meaning="torque, sensor or velocity lags or leads the position, and was not shifted. Possible causes: a filter, a "
-    "slow bus, a backward difference. Info: the lag moves no parameter by more than 5 % or two standard errors",
+    meaning="torque, sensor or velocity lags or leads the position. The signal was not shifted. Possible causes: a "
+    "filter, a slow bus, a backward difference. Info: the lag changes each value by at most 5 % and at most two "
+    "standard errors",
     advice="shift the signal by its lag, or remove the cause of the lag",
 )
 DELAY_REMOVED = FindingType(
     code="delay_removed",
     severity="info",
     meaning="torque, sensor or velocity lagged or led the position. The signal was shifted before the identification. "
-    "The shift moved the named parameters by more than 5 % or two standard errors",
-    advice="nothing. A shift of 0 keeps the signal unchanged",
+    "The shift changed each named parameter by more than 5 % or two standard errors",
+    advice="do nothing. To keep the signal unchanged, state a shift of 0",
 )
 # Explanation of an early torque; a torque does not come before its motion.
-_EARLY = "the position is late or coarse, the torque early, or the gear elastic"
-_WHERE = "the position's filter and resolution, both clocks, and the backlash"
+_EARLY = "the position is late or coarse, the torque is early, or the gear is elastic"
+_WHERE = "the position's filter and resolution, the clocks of both signals, and the backlash"
 _FILTERS = "the filters and clocks of position, velocity and torque"
 _UNSHIFTED = Action("inspect", text="the stated shift, and remove it")
 _COARSE = 0.005  # of a delay: a smaller error is not shown
@@ -65,7 +66,7 @@ def _left(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
             described,
             Action("inspect", text=_WHERE if early else _FILTERS),
             details=_clauses(
-                "the torque balance fits no better without this delay",
+                "removing this delay does not improve the fit of the torque balance",
                 f"{alike}, or the gear is elastic" if early else alike,
                 _interval(delay),
             ),
@@ -113,7 +114,9 @@ def _removed(delay: Delay, evidence: Evidence) -> Iterator[Finding]:
     yield DELAY_REMOVED.finding(
         _described(delay, evidence, "lagged", "led"),
         *_instead(delay, evidence),
-        details=_clauses("it was shifted before the identification", did, early, _interval(delay)),
+        details=_clauses(
+            "the signal was shifted before the identification", did, early, _interval(delay)
+        ),
         evidence=measured,
         parameters=concerned,
     )

@@ -147,23 +147,23 @@ class Excitation:
         """Return the lack of time, if only noise limits the accuracy."""
         duration = float(self.evidence.table.duration.sum())
         needed = duration * min((error / wanted) ** 2, 1e6)
-        text = f"with this noise about {_two(needed)} s of motion are needed, the log has {_two(duration)} s"
+        text = f"the log has {_two(duration)} s of motion, but about {_two(needed)} s are needed with this noise"
         short = f"{_two(duration)} of {_two(needed)} s recorded"
         motion = f"about {_two(needed)} s of such motion"
         measured = {"duration": Measured(duration, "s"), "duration.needed": Measured(needed, "s")}
         if needed > _LONGEST * duration:
             text = (
-                f"noise hides {name}: the log has {_two(duration)} s of motion, {_two(needed / duration)} times as "
-                "much is needed"
+                f"noise hides {name}: the log has {_two(duration)} s of motion, but {_two(needed / duration)} times "
+                "this duration is needed"
             )
             measured["duration.factor"] = Measured(float(_two(needed / duration)))
-            short, motion = "too much noise", f"motion in which {name} shows more"
+            short, motion = "too much noise", f"motion in which {name} has more effect"
         return Lack("duration", short, text, motion, measured, needed)
 
     def noise(self) -> Lack:
         """Return the lack of resolution, if the velocity's noise hides the inertia."""
         share = self.evidence.residuals.noise_share
-        text = f"noise is {percent(share)} of the velocity's change over a window"
+        text = f"velocity noise is {percent(share)} of the velocity's change over a window"
         motion = "the position with a finer resolution"
         return Lack(
             "velocity_noise", "noisy velocity", text, motion, {"velocity_noise": Measured(share)}
@@ -175,7 +175,7 @@ class Excitation:
             return Lack(
                 "reversals",
                 f"{count} of {_REVERSALS} reversals",
-                f"the log has {count} reversal{'s' * (count != 1)}, {_REVERSALS} or more are needed",
+                f"the log has {count} reversal{'s' * (count != 1)}, but {_REVERSALS} or more are needed",
                 f"motion with {_REVERSALS} or more reversals",
                 {
                     "reversals": Measured(float(count)),
@@ -187,7 +187,7 @@ class Excitation:
             return Lack(
                 "direction",
                 f"{share} in one direction",
-                f"the log moves in one direction {share} of the time",
+                f"the joint moves in one direction for {share} of the time",
                 "equal motion in both directions",
                 {"direction": Measured(1.0 - self.rarer)},
             )
@@ -201,7 +201,7 @@ class Excitation:
         return Lack(
             "speed_range",
             f"speeds {_two(slow)} to {_two(fast)} {unit} only",
-            f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, a wider range is needed, e.g. "
+            f"the log's speeds are {_two(slow)} to {_two(fast)} {unit}, but a wider range is needed, e.g. "
             f"{_two(0.2 * fast)} to {_two(fast)} {unit}",
             f"motion at several speeds from {_two(0.2 * fast)} to {_two(fast)} {unit}",
             {
@@ -244,7 +244,8 @@ class Excitation:
             return Lack(
                 "top_speed",
                 f"top speed {_two(fast)} {unit} only",
-                f"the top speed is {_two(fast)} {unit}, static friction decays at {_two(slow)} {unit}",
+                f"the top speed, {_two(fast)} {unit}, is below twice the decay speed of static friction, "
+                f"{_two(slow)} {unit}",
                 f"motion faster than {_two(2.0 * slow)} {unit}",
                 {"speed.fast": Measured(fast, unit), "speed.decay": Measured(slow, unit)},
             )
@@ -265,7 +266,7 @@ class Excitation:
         return Lack(
             "acceleration",
             "little acceleration",
-            f"acceleration takes {percent(share)} of the log's torque, {percent(_ACCELERATION)} is needed",
+            f"acceleration causes {percent(share)} of the log's torque, but {percent(_ACCELERATION)} is needed",
             "harder acceleration",
             {"acceleration": Measured(share), "acceleration.needed": Measured(_ACCELERATION)},
         )
@@ -292,15 +293,15 @@ class Excitation:
             return Lack(
                 "load_range",
                 short,
-                f"{WEAK_READING}, which varies by {_two(spread)} {unit} without its noise",
+                f"{WEAK_READING}; without noise, the reading varies by {_two(spread)} {unit}",
                 motion,
                 {"load_range": Measured(spread, unit), "load_range.share": Measured(share)},
             )
         return Lack(
             "load_range",
             short,
-            f"the sensed torque varies by {_two(spread)} {unit}, {percent(share)} of the drive's torque, "
-            f"{percent(_LOAD)} is needed",
+            f"the sensed torque varies by {_two(spread)} {unit}; this is {percent(share)} of the drive's torque, "
+            f"but {percent(_LOAD)} is needed",
             motion,
             {
                 "load_range": Measured(spread, unit),
@@ -322,7 +323,7 @@ class Excitation:
         return Lack(
             "travel",
             f"{_below(self.travel, needed)} of {_two(needed)} rad travelled",
-            f"the log's angles cover {_below(self.travel, needed)} rad, {_two(needed)} rad are needed",
+            f"the log's angles cover {_below(self.travel, needed)} rad, but {_two(needed)} rad are needed",
             f"motion through {_two(needed)} rad or more",
             {"travel": Measured(self.travel, "rad"), "travel.needed": Measured(needed, "rad")},
             needed,

@@ -21,7 +21,8 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     if recording.gaps:
         longest = max(recording.gaps, key=lambda gap: gap.duration)
         yield GAPS.finding(
-            f"gaps in the log: {len(recording.gaps)}, the longest of {longest.duration:.3g} s at {longest.start:.3f} s",
+            f"gaps in the log: {len(recording.gaps)}; the longest lasts {longest.duration:.3g} s, from "
+            f"{longest.start:.3f} s",
             Action("inspect", text="why samples are missing"),
             details="no window crosses a gap",
             evidence={

@@ -12,7 +12,8 @@ from jointid.identification.warnings.inspection import Inspected
 LATE = FindingType(
     code="late_samples",
     severity="info",
-    meaning="samples of a session were late or lost, or a command was not confirmed. These intervals are left out",
+    meaning="samples of a session were late or lost, or a command was not confirmed. The identification leaves "
+    "these intervals out",
     advice="find out what delays the bus or the computer",
 )
 
@@ -27,7 +28,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     yield LATE.finding(
         f"{left_out} of {intervals} intervals ({percent(left_out / intervals)}) have late or lost samples",
         Action("inspect", text="what delays the bus or the computer"),
-        details=f"these intervals are left out; {missing} cycles are missing, or commands were not confirmed",
+        details=f"these intervals are left out: {missing} cycles are missing, or commands were not confirmed",
         evidence={
             "left_out": Measured(left_out),
             "intervals": Measured(intervals),

@@ -14,8 +14,8 @@ from jointid.identification.warnings.undetermined import listed
 LEFT_OUT = FindingType(
     code="left_out",
     severity="info",
-    meaning="a column with the name of a signal was not read: its unit does not fit, it has no numbers, or another "
-    "column was read as this signal",
+    meaning="a column with the name of a signal was not read: the unit does not fit, the column has no numbers, "
+    "or another column was read as this signal",
     advice="name the column, its unit or its scale when loading. Do nothing if you do not need the signal",
 )
 INTERPOLATED = FindingType(

@@ -13,8 +13,8 @@ from jointid.identification.warnings.evidence import Evidence
 LOAD_SCALE = FindingType(
     code="load_scale",
     severity="blocking",
-    meaning="load friction is a share of the drive's torque, and neither inertia nor gravity is known. The data "
-    "then fit equally well if all values are multiplied by any factor",
+    meaning="load friction is proportional to the drive's torque, and neither inertia nor gravity is known. All values "
+    "multiplied by one factor then fit the data equally well",
     advice="leave load friction out, or state the joint's inertia or its link",
 )
 
@@ -42,7 +42,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         return
     model = evidence.problem.choice.model.replace(load_friction=False)
     yield LOAD_SCALE.finding(
-        "load_friction scales all other values, as neither inertia nor gravity is known",
+        "load_friction scales all other values, because neither inertia nor gravity is known",
         Action("call", {"model": str(model)}),
         Action("inspect", text="the data sheet, and state the joint's inertia or its link"),
         details="the drive's torque alone does not determine these values",

@@ -27,7 +27,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         samples = abs(long[most]) / period
         meant = {name: 1e-3 * delay if name in long else delay for name, delay in shift.items()}
         yield LONG_SHIFT.finding(
-            f"{most} is shifted by {long[most]:g} s ({samples:.0f} samples): no bus delays that long",
+            f"{most} is shifted by {long[most]:g} s ({samples:.0f} samples): no bus has such a long delay",
             Action("call", {"shift": meant}, "if milliseconds were meant"),
             Action("inspect", text="the stated shift, and give it in seconds"),
             details="shifts are in seconds: 1 ms is 0.001",

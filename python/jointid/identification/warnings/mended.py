@@ -25,8 +25,8 @@ HELD_ROWS = FindingType(
 HELD_TORQUE = FindingType(
     code="held_torque",
     severity="info",
-    meaning="the recording does not say how the torque varies between samples. The torque balance predicts better with "
-    "a held torque (zero-order hold), so the identification assumes a held torque",
+    meaning="the recording does not say how the torque varies between samples. With a held torque (zero-order "
+    "hold), the torque balance predicts better than with a linear torque, so the identification assumes a held torque",
     advice="state `torque_hold`: `zoh` for a command, `linear` for a measured torque",
 )
 
@@ -41,11 +41,11 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             )
         elif mend.code == HELD_TORQUE.code:
             yield HELD_TORQUE.finding(
-                "the torque is assumed to be held between samples: the balance then predicts better",
+                "the torque is assumed to be held between samples: a linear torque predicts worse",
                 Action(
                     "call",
                     {"torque_hold": "zoh"},
-                    text="to state this; linear for a measured torque",
+                    text="if the torque is held; linear if it is measured",
                 ),
                 evidence={"period": Measured(mend.size, "s")},
             )
@@ -53,7 +53,7 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
             yield HELD_ROWS.finding(
                 f"{mend.count} rows repeat the previous sample and are left out",
                 Action("record", text="at the rate of the bus"),
-                details=f"a sample lasts {mend.size:.3g} rows",
+                details=f"the log has {mend.size:.3g} rows for each sample of the bus",
                 evidence={"rows": Measured(mend.count), "rows_per_sample": Measured(mend.size)},
             )
 

@@ -15,8 +15,8 @@ MESSAGE_LOG = FindingType(
     code="message_log",
     severity="info",
     meaning="the file was not read exactly as written: rows or messages are damaged, repeated, late or left out. Or "
-    "time stamps, units or sides differ from the file",
-    advice="check the recorder. Do nothing if you expect this",
+    "`jointid` uses other time stamps, units or sides than the file states",
+    advice="check the recorder. Do nothing if you expect these differences",
 )
 _ROOM = 65  # characters of a title, without the number of recordings
 

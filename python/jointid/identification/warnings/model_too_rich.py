@@ -20,8 +20,9 @@ from jointid.problem.inner_products import inner
 
 MODEL_TOO_RICH = FindingType(
     code="model_too_rich",
-    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, rests on "
-    "only three windows, or is extrapolated from faster motion. Or the shape of the Stribeck curve ended on a bound",
+    meaning="the data do not determine the Stribeck model. Static friction is zero or not significant, is "
+    "determined by only three windows, or is extrapolated from faster motion. Or a shape parameter of the Stribeck "
+    "curve ended on a bound",
     advice="use the model coulomb_viscous if the log shows no static friction, or record slow motion through zero speed"
     f"{DESIGNED}",
     picture="friction-map",
@@ -64,7 +65,7 @@ def richness(evidence: Evidence) -> tuple[str, dict[str, Measured]] | None:
             return few
     for name in SHAPES:
         if name in found and found[name].at_bound is not None and name in evidence.bounds_from_data:
-            return f"{name} ended on the edge of the range that the data show", {
+            return f"{name} ended on a bound that comes from the data", {
                 name: Measured(found[name].value, found[name].unit)
             }
     return None
@@ -121,7 +122,7 @@ def _beyond(measured: Mapping[str, Measured]) -> str:
         if kind == "elsewhere_stderr":
             value = measured[f"{static}.elsewhere"].value
             shown = f"{rounded(value, error.value)} ± {two_digits(error.value)} {error.unit}"
-            return f"without them, {static} is {shown}"
+            return f"without these windows, {static} is {shown}"
         if kind == "shown":
             found = measured[static]
             return f"{static} is {found.value:.3g} {found.unit}, extrapolated from faster motion"

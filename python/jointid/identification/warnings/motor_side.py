@@ -13,8 +13,8 @@ MOTOR_SIDE = FindingType(
     code="motor_side",
     severity="info",
     meaning="no gear ratio is known, so all values are on the motor side. Or motor torque or current is used with a "
-    "gear ratio of 1. Blocking: the joint has a gear ratio, but the log was read without it",
-    advice="state the gear ratio. Do nothing if you want motor-side values or the motor has no gear",
+    "gear ratio of 1. Blocking: the joint has a gear ratio, but the log was read without this ratio",
+    advice="state the gear ratio. Do nothing if you want motor-side values, or if the motor has no gear",
 )
 _CLOSE = 0.03  # of the gear ratio
 _RATIO = "motor angle per joint angle"

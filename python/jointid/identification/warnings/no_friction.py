@@ -17,10 +17,10 @@ from jointid.recording.header_words import AT_THE_LINK
 NO_FRICTION = FindingType(
     code="no_friction",
     meaning="friction is less than 2 % of the torque. The torque was measured at the link, or the joint has no "
-    "friction, as in a simulation. Blocking: friction is less than 5 %, and the torque's header names the joint or a "
-    "sensor",
-    advice="load the motor's torque or current as torque, and the measured column as sensor. Do nothing if the joint "
-    "has no friction",
+    "friction, as in a simulation. Blocking: friction is less than 5 % of the torque, and the header of the torque "
+    "column names the joint or a sensor",
+    advice="load the motor's torque or current as torque, and the torque at the link as sensor. Do nothing if the "
+    "joint has no friction",
 )
 _EXPLAINED = 0.95  # of the variance: friction is absent, not hidden in a residual
 _SMALL = 0.02  # of the torque's root mean square
@@ -88,11 +88,11 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     header = _header(evidence)
     share = _most(evidence, [evidence.parameters[name] for name in names]) / evidence.torque_level
     severity: Severity = "warning"
-    details = f"{_CAUSE}; a joint simulated without friction has none"
+    details = f"{_CAUSE}; this finding is normal for a joint that was simulated without friction"
     if header:
         severity, details = "blocking", f"{_CAUSE}; the torque's header is {header!r}"
     yield NO_FRICTION.finding(
-        f"the torque contains no friction: at most {percent(share)} of the torque while the joint moves",
+        f"the torque contains no friction: friction is at most {percent(share)} of the torque in motion",
         Action("inspect", text=_REMEDY),
         *((_as_sensor(header),) if header else ()),
         details=details,

@@ -13,8 +13,8 @@ from jointid.identification.warnings.undetermined import listed, scale_of
 
 NOISY_SIGNAL = FindingType(
     code="noisy_signal",
-    meaning="noise in the extra signals of own terms moves a parameter by more than 1.5 %. Noise in a signal makes the "
-    "coefficient of this signal too small",
+    meaning="noise in the extra signals of own terms changes a parameter by more than 1.5 %. Noise in a signal makes "
+    "the coefficient of this signal too small",
     advice="record the signal with less noise, or filter it without delay. Fix the coefficient if you know its value",
 )
 _MOVED = 0.015  # of the value
@@ -46,8 +46,8 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     yield NOISY_SIGNAL.finding(
         f"{text}{listed(sizes, TITLE - len(text))}",
         Action("record", text=f"{listed(noisy, _NAMES)} with less noise"),
-        details=f"standard deviation of the noise: {listed(deviations)}; the coefficient of a noisy signal is too "
-        "small by about this share; the shares are computed with a simulated second recording",
+        details="noise in a signal makes the coefficient of this signal too small; the changes are computed with a "
+        f"simulated second recording; standard deviation of the noise: {listed(deviations)}",
         evidence={f"{name}.moved": Measured(share) for name, share in moved.items()}
         | {f"{name}.noise": Measured(sigma) for name, sigma in noise.noise},
         parameters=tuple(moved),

@@ -16,8 +16,9 @@ from jointid.recording.velocity_noise import noise_of_velocity
 
 NOISY_VELOCITY = FindingType(
     code="noisy_velocity",
-    meaning="velocity noise moves a parameter by more than 2 % and by more than half its standard error. Or, for "
-    "windows of any length, the noise is large compared with the change of velocity: the inertia is then too small",
+    meaning="velocity noise changes a parameter by more than 2 % and by more than half of its standard error. Or the "
+    "noise is large compared with the change of velocity in windows of every length. The identified inertia is then "
+    "too small",
     advice="record the position with a finer resolution, or record longer. Leave the velocity column out if it is "
     "noisier than the position's derivative",
 )
@@ -31,7 +32,7 @@ _FINER = Action("record", text="the position with a finer resolution, or for lon
 _DERIVED = Action(
     "call",
     {"columns": {"velocity": None}},
-    text="the position's derivative is less noisy",
+    text="the position's derivative is less noisy than this column",
     function="load",
 )
 
@@ -51,9 +52,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     if limited:
         share = evidence.residuals.noise_share
         about = f"about {percent(share)}" if share < HIDES else "far"
-        causes.append(f"noise is {percent(share)} of the velocity's change over a window")
+        causes.append(f"velocity noise is {percent(share)} of the velocity's change over a window")
         details.append(f"inertia is {about} too small")
-        details.append("windows of every length have more than 1 % noise")
+        details.append("for windows of any length, noise is more than 1 % of the velocity's change")
         measured["noise_share"] = Measured(share)
         inertia = evidence.parameters.get("inertia")
         if inertia is not None and inertia.vary and "inertia" not in named:

@@ -11,8 +11,8 @@ from jointid.identification.warnings.structured_residual import excluded, exclud
 POOR_FIT = FindingType(
     code="poor_fit",
     meaning="the model explains less than 95 % of the signal's variance, and neither noise nor a known cause explains "
-    "the rest. Or the model explains less than 5 %, even if the rest is noise. Blocking: the model fits worse than the "
-    "signal's mean",
+    "the rest. Or the model explains less than 5 % of the variance, even if the rest is noise. Blocking: the model "
+    "fits worse than the signal's mean",
     advice="check units, signs and gear ratio",
     picture="windows",
 )
@@ -30,7 +30,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
     measured = {"r_squared": Measured(explained)}
     if explained < 0.0 and not named(evidence):
         yield POOR_FIT.finding(
-            f"the model explains less than the signal's mean (R² = {explained:z.2f})",
+            f"the model fits worse than the signal's mean (R² = {explained:z.2f})",
             *actions,
             details="the values cannot be used",
             evidence=measured,

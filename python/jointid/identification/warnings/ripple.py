@@ -22,8 +22,8 @@ Array = NDArray[np.float64]
 
 RIPPLE = FindingType(
     code="ripple",
-    meaning="the residual oscillates with a multiple of the motor angle. Info: the ripple moves no parameter by more "
-    "than 5 % or two standard errors",
+    meaning="the residual oscillates with a multiple of the motor angle. Info: the ripple changes each value by at "
+    "most 5 % and at most two standard errors",
     advice="add ripple of the named order to the model, e.g. `stribeck:ripple=2`",
     picture="windows",
 )
@@ -82,7 +82,7 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         if cause is not None:
             measured |= {f"{name}.shift": Measured(share) for name, share in cause.shares.items()}
         yield RIPPLE.finding(
-            f"ripple of {peak.amplitude:.2g} N·m at {peak.multiple:g} × motor angle is "
+            f"ripple of {peak.amplitude:.2g} N·m at {peak.multiple:g} × motor angle explains "
             f"{percent(peak.share)} of the residual",
             *((add_ripple(evidence, peak.multiple),) if harmful else ()),
             details=f"{does}; strain-wave gears have such ripple",

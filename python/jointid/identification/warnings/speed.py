@@ -45,7 +45,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         measured = {"motor_speed": shown}
     elif swing > _SWING and travel < 0.5 * swing and not _of_the_motor(recording):
         turns = swing / (2.0 * np.pi)
-        seen = f"the joint would swing through {turns:.0f} turns"
+        seen = f"the joint would swing through {turns:.0f} revolutions"
         measured = {"swing": Measured(turns, "turns")}
         if not whole:
             severity = _of_many_turns(recording, agrees=agreement is not None)
@@ -53,7 +53,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         return
     if severity == "info":
         yield IMPLAUSIBLE_UNITS.finding(
-            f"{seen}, as a wheel or a spindle does",
+            f"{seen}; a wheel or a spindle can do this",
             details="if the joint has stops, the position is probably in degrees",
             evidence=measured,
             severity=severity,
@@ -64,8 +64,8 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if evidence.joint is not None and "motor_speed" in measured and _is_converted(recording):
         sides = {"side": dict.fromkeys(signals, "motor"), "gear_ratio": evidence.joint.gear_ratio}
         yield IMPLAUSIBLE_UNITS.finding(
-            f"{seen}: the position is probably the motor's",
-            Action("call", sides, "if it is the motor's", "load"),
+            f"{seen}: the position is probably the motor angle",
+            Action("call", sides, "if the position is the motor angle", "load"),
             Action("inspect", text="the unit of the position and the gear ratio"),
             details=details,
             evidence=measured,
@@ -76,7 +76,9 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
     if whole:
         details = "all positions are whole numbers and may also be encoder counts; " + details
         scale = dict.fromkeys(signals, ...)
-        advice.append(Action("call", {"scale": scale}, "2π over the counts per revolution", "load"))
+        advice.append(
+            Action("call", {"scale": scale}, "2π divided by the counts per revolution", "load")
+        )
     yield IMPLAUSIBLE_UNITS.finding(
         f"{seen}: the position is probably in degrees",
         *advice,

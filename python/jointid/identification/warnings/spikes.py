@@ -24,8 +24,8 @@ JUMPS = FindingType(
     code="jumps",
     severity="blocking",
     meaning="the position jumps, and neither the velocity nor the neighbouring samples show this jump. "
-    "The angle wraps, the encoder lost its index, or samples are lost",
-    advice="unwrap the angle, or cut the recording there",
+    "Possible causes: the angle wraps, the encoder lost its index, or samples are lost",
+    advice="unwrap the angle, or cut the recording at the jump",
 )
 
 _JUMP = 10.0  # times the usual change of the velocity between samples

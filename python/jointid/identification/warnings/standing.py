@@ -18,7 +18,8 @@ STANDING = FindingType(
 HARDLY_MOVES = FindingType(
     code="hardly_moves",
     severity="blocking",
-    meaning="the whole motion is less than 50 encoder counts, or only noise. Small motion causes other findings, too",
+    meaning="the whole motion is less than 50 encoder counts, or is only noise. Such a motion causes other "
+    "findings, too",
     advice="record a wider motion",
 )
 _MUCH = 0.35

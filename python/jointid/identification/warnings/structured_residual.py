@@ -13,7 +13,7 @@ from jointid.identification.warnings.undetermined import listed, wide, with_part
 STRUCTURED_RESIDUAL = FindingType(
     code="structured_residual",
     meaning="the model lacks an effect, and no known cause explains the residual. The residuals of neighbouring "
-    "windows correlate by more than 0.5, or a parameter is uncertain. Info: every parameter is well determined",
+    "windows have a correlation above 0.5, or a parameter is uncertain. Info: every parameter is well determined",
     advice="look at the residuals in the report. Standard errors include the correlation; values may still be biased",
     picture="windows",
 )
@@ -34,14 +34,15 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         f"an effect is missing: residuals of neighbouring windows correlate (r = {correlation:.2f})"
     )
     if not correlation > _CORRELATED:  # only the uncertain values show it
-        title = (
-            f"uncertain although well excited: {listed(uncertain, _ROOM)} (r = {correlation:.2f})"
+        title = f"uncertain although the motion is good: {listed(uncertain, _ROOM)}"
+        makes = (
+            "the model lacks an effect, or the windows are too long to show this effect; residuals of neighbouring "
+            f"windows correlate (r = {correlation:.2f})"
         )
-        makes = "the model lacks an effect, or the windows are too long to show it"
     # If all intervals are narrow, including the effect of the residual, the finding is an info.
     yield STRUCTURED_RESIDUAL.finding(
         title,
-        Action("inspect", text="the residuals over time and over velocity"),
+        Action("inspect", text="the residuals over time and velocity"),
         details="; ".join(filter(None, (excluded(evidence), makes))),
         evidence={"autocorrelation": Measured(correlation)} | excluded_number(evidence),
         parameters=uncertain,
@@ -66,7 +67,7 @@ def harmless(evidence: Evidence) -> bool:
     return evidence.causes is not None and bool(evidence.causes.harmless)
 
 
-def excluded(evidence: Evidence, what: str = "it") -> str:
+def excluded(evidence: Evidence, what: str = "the residual") -> str:
     """Return a harmless cause, or the number of excluded causes, as a clause.
 
     `Causes.excluded` has the names.

@@ -20,9 +20,9 @@ from jointid.recording.recording import Recording
 
 TIME_JITTER = FindingType(
     code="time_jitter",
-    meaning="the position shows that time stamps are off by more than 2 % of a sample period",
-    advice="take the time stamp on the device that takes the sample. If samples are evenly spaced and none is "
-    "repeated, use even time stamps",
+    meaning="the position shows that the time stamps have errors of more than 2 % of a sample period",
+    advice="write the time stamp on the device that takes the sample. If samples are evenly spaced and no sample is "
+    "repeated, use evenly spaced time stamps",
 )
 _JITTER = 0.02  # sample periods
 
@@ -40,11 +40,11 @@ def _in_recording(_: Evidence, inspected: Inspected) -> Iterator[Finding]:
     even = not copies and as_uniform < 0.3 * as_stamped
     seen = "; the samples themselves look evenly spaced" if even else ""
     seen = "; repeated rows are not counted" if copies else seen
-    advice = "even time stamps" if even else "time stamps where the samples are taken"
+    advice = "even time stamps" if even else "time stamps on the device that takes the samples"
     yield TIME_JITTER.finding(
         f"time stamps are off by {1e6 * as_stamped:.3g} µs ({percent(as_stamped / period)} of the sample period)",
         Action("record", text=advice),
-        details=f"the position shows this; a busy computer causes such time stamps{seen}",
+        details=f"the position shows these errors; a busy computer causes such time stamps{seen}",
         evidence={
             "scatter": Measured(as_stamped, "s"),
             "scatter_about_even_times": Measured(as_uniform, "s"),

@@ -21,8 +21,8 @@ from jointid.recording.sides import READ_FROM
 WRONG_SCALE = FindingType(
     code="wrong_scale",
     severity="blocking",
-    meaning="the inertia in the log differs from the known inertia by more than 5 %. If the difference "
-    "explains the residual: a warning from 1 %, blocking from a factor of 1.5",
+    meaning="the inertia in the log differs from the known inertia by more than 5 %. If this difference explains the "
+    "residual, a difference of 1 % already gives a warning, but only a factor of 1.5 is blocking",
     advice="correct gear ratio, torque constant, torque unit or inertia. Identify the inertia only if its known value "
     "is wrong",
 )
@@ -30,7 +30,8 @@ WRONG_SCALE = FindingType(
 UNSIGNED_TORQUE = FindingType(
     code="unsigned_torque",
     severity="blocking",
-    meaning="the torque is never negative although the joint moves both ways, and fits the model only as a magnitude",
+    meaning="the torque is never negative although the joint moves in both directions. The log has only the "
+    "magnitude of the torque",
     advice="record the torque with its sign",
 )
 
@@ -45,12 +46,12 @@ _DEGREE = np.pi / 180.0
 def _find(evidence: Evidence) -> Iterator[Finding]:
     if _is_unsigned(evidence):
         yield UNSIGNED_TORQUE.finding(
-            "the torque is never negative, although the joint moves both ways: its sign is missing",
+            "the torque has no sign: it is never negative, although the joint moves in both directions",
             Action(
                 "inspect",
-                text="the driver's signed value, or the sign of a servo's position error",
+                text="whether the driver logs a signed torque; a servo's position error has the sign",
             ),
-            details="the magnitude fits a torque that changes its sign",
+            details="the recorded torque fits the magnitude of a torque that changes sign",
         )
         return
     correlation = _torque_with_velocity(evidence)

@@ -36,7 +36,7 @@ def corrections_of(evidence: Evidence, ratio: float) -> Iterator[Action]:
         yield from _of_gear(joint, recording, signal, ratio)
     unit = _other_unit(recording, signal, ratio)
     if unit is not None:
-        yield Action("call", {"units": {signal: unit}}, "if this is its unit", "load")
+        yield Action("call", {"units": {signal: unit}}, "if this is the true unit", "load")
 
 
 def _of_gear(joint: Joint, recording: Recording, signal: str, ratio: float) -> Iterator[Action]:
@@ -47,11 +47,11 @@ def _of_gear(joint: Joint, recording: Recording, signal: str, ratio: float) -> I
         sides = {"side": {"torque": "motor"}, "gear_ratio": joint.gear_ratio}
         yield Action("call", sides, "if the torque is the motor's", "load")
     elif signal == "torque" and _near(ratio / gear) and of_motor:
-        yield Action("call", {"side": {"torque": "joint"}}, "if it is the joint's", "load")
+        yield Action("call", {"side": {"torque": "joint"}}, "if the torque is the joint's", "load")
     elif signal == "current" and _near(ratio / gear) and constant is not None:
         right, text = (
             float(f"{constant / gear:.6g}"),
-            "if the stated torque constant is behind the gear",
+            "if the stated torque constant applies behind the gear",
         )
         yield Action("call", {"torque_constant": right}, text, "Joint")
 

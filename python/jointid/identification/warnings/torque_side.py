@@ -12,8 +12,8 @@ TORQUE_SIDE = FindingType(
     code="torque_side",
     severity="blocking",
     meaning="position or velocity is on the motor side, and the side of the torque is not stated. All values in "
-    "units of torque may be wrong by a factor, the gear ratio",
-    advice="state the side of the gear on which the torque is (`side`)",
+    "units of torque may be wrong by a factor equal to the gear ratio",
+    advice="state with `side` on which side of the gear the torque is measured",
 )
 
 

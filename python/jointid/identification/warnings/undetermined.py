@@ -19,9 +19,9 @@ from jointid.identification.warnings.no_friction import without_friction
 
 UNDETERMINED = FindingType(
     code="undetermined",
-    meaning="the 95 % interval is wider than ±4 % of the value (±1 % for a gain), or the value changes with the length "
-    "of the windows. The log has too little speed, slow motion, reversals, load, acceleration, travel or time. Or "
-    "velocity noise hides the inertia. Or a sensor gain of the opposite sign fits nearly as well",
+    meaning="the 95 % interval is wider than ±4 % of the value (±1 % for a sensor gain), or the value changes with the "
+    "length of the windows. The log has too little fast motion, slow motion, reversals, load, acceleration, travel or "
+    "time. Or velocity noise hides the inertia. Or a sensor gain of the opposite sign fits the log nearly as well",
     advice=f"fix the parameter, or record the missing motion{DESIGNED}",
 )
 
@@ -228,7 +228,7 @@ def _advice(
         gain = evidence.parameters["sensor_gain"].value
         # A bound of 0 is refused, because the sensor's residual is divided by the gain.
         bound = {"sensor_gain": {"min" if gain > 0.0 else "max": float(f"{0.01 * gain:.1e}")}}
-        yield Action("call", {"parameters": bound}, text="if that is its sign")
+        yield Action("call", {"parameters": bound}, text="if the gain has this sign")
 
 
 def _kind(name: str) -> str:
@@ -277,8 +277,8 @@ def _why_undetermined(p: ParameterEstimate, evidence: Evidence) -> list[_Reason]
     shift = max(abs(p.shift_halved or 0.0), abs(p.shift_doubled or 0.0))
     if scale > 0.0 and shift > _LARGE_SHIFT * chance and shift > _NOTICEABLE_SHIFT * scale:
         text = (
-            f"{p.name} moves by {percent(shift / scale)} ({shift / chance:.1f} random errors) when the windows are "
-            "halved or doubled"
+            f"{p.name} changes by {percent(shift / scale)} ({shift / chance:.1f} times its random error) if the "
+            "window length is halved or doubled"
         )
         measured = {
             f"{p.name}.shift": Measured(shift / scale),
@@ -327,7 +327,9 @@ def _guessed_sign(evidence: Evidence) -> _Reason | None:
     if gain is None or not gain.vary or not evidence.guessed_sign:
         return None
     sign = "negative" if gain.value > 0.0 else "positive"
-    return _Reason("sign of sensor_gain unknown", f"a {sign} sensor_gain fits almost as well", {})
+    return _Reason(
+        "sign of sensor_gain unknown", f"a {sign} sensor_gain fits almost as well as this value", {}
+    )
 
 
 CHECK = Check(_find, (UNDETERMINED,))

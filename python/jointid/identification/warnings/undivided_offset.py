@@ -12,9 +12,9 @@ from jointid.identification.warnings.evidence import Evidence
 UNDIVIDED_OFFSET = FindingType(
     code="undivided_offset",
     severity="info",
-    meaning="a constant torque and direction-dependent Coulomb friction look the same in the data. Only the sum of the "
-    "Coulomb frictions is determined",
-    advice="state the offset if you know it, or leave the offset out if gravity is the only constant torque",
+    meaning="a constant torque and direction-dependent Coulomb friction look the same in the data. The data determine "
+    "only the sum of the Coulomb friction in both directions",
+    advice="state the offset if you know it, or leave the offset out if only friction and gravity act",
 )
 
 
@@ -25,9 +25,9 @@ def _find(evidence: Evidence) -> Iterator[Finding]:
         unit = found[each.offset].unit
         known = {"parameters": {each.offset: ...}}
         yield UNDIVIDED_OFFSET.finding(
-            f"{each.offset} and the two Coulomb frictions look the same (their sum: {total:.4g} {unit})",
+            f"{each.offset} and the two Coulomb frictions look the same (sum of both: {total:.4g} {unit})",
             Action("call", known, text="if you know the offset"),
-            details="no motion separates them; the Coulomb frictions are shown as equal",
+            details="no motion separates offset and Coulomb friction; the two Coulomb frictions are shown as equal",
             evidence={"coulomb_sum": Measured(total, unit)},
             parameters=tuple(each.change),
         )

@@ -13,7 +13,7 @@ IMPLAUSIBLE_UNITS = FindingType(
     code="implausible_units",
     severity="blocking",
     meaning="degrees seem to be read as radians: the motion is too fast or too wide, or velocity or inertia is wrong "
-    "by a factor of about 57.3. Or the motor's angle is read as the joint's. Or the time is not in seconds. Or a "
+    "by a factor of about 57.3. Or the motor's angle is read as the joint's angle. Or the time is not in seconds. Or a "
     "current above 100 A or a torque above 5 kN·m has no stated unit. Info: the motion is wide, but its unit is stated",
     advice="state the unit of position, velocity, time, current or torque when loading, or convert the values",
 )
@@ -76,5 +76,5 @@ def degrees_advice(recording: Recording, signals: Sequence[str]) -> Action:
         units |= {name: overridden[name] for name in signals if name in overridden}
     if units:
         return Action("call", {"units": units}, function="load")
-    text = "the header or program that states radians; correct it, or convert the values"
+    text = "the header or program that states radians, and correct the unit or values"
     return Action("inspect", text=text)

@@ -25,8 +25,8 @@ REVERSED_SIGN = FindingType(
 VELOCITY_MISMATCH = FindingType(
     code="velocity_mismatch",
     meaning="the velocity differs from the position's derivative by more than 3 % (blocking: by more than 10 %)",
-    advice="correct sampling rate, gear ratio or unit, or state the side of the gear. Leave the velocity column out "
-    "only if nothing else is wrong",
+    advice="correct sampling rate, gear ratio or unit, or state the side of the gear. If only the velocity column "
+    "is wrong, leave this column out",
 )
 
 MISMATCH = 0.03  # of the position's rate
@@ -62,7 +62,7 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         )
     elif found.scale < 0.0:
         yield REVERSED_SIGN.finding(
-            "velocity and derivative of the position have opposite signs: one of them is wrong",
+            "velocity and derivative of the position have opposite signs: one sign is wrong",
             *possible,
             Action("inspect", text="the signs of position and velocity, and flip the wrong one"),
             evidence=scale,
@@ -88,7 +88,9 @@ def _in_recording(evidence: Evidence, inspected: Inspected) -> Iterator[Finding]
         facts = () if suspected else tuple(_stated_facts(recording, found.scale))
         wrong = not 1.0 / _WRONG < found.scale < _WRONG
         yield VELOCITY_MISMATCH.finding(
-            f"{suspected}: rates differ by a factor of {found.scale:.4g}" if suspected else rate,
+            f"{suspected}: velocity and position differ by a factor of {found.scale:.4g}"
+            if suspected
+            else rate,
             *facts,
             *(advice if suspected else possible),
             *([] if suspected or (facts and wrong) else [_WITHOUT_VELOCITY]),
@@ -141,7 +143,7 @@ def raise_if_far_off(recordings: Sequence[Recording]) -> None:
         found = inspect(run).found.agreement
         if found is not None and 0.0 < abs(found.scale) < 1.0 / _OTHER_UNIT:
             raise InputError(
-                f"the position moves by {found.scale:.4g} times the integral of the velocity",
+                f"the change of position is {found.scale:.4g} times the integral of the velocity",
                 argument="velocity",
                 place=f"recording {number}",
                 remedy=(

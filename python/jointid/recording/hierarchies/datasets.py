@@ -218,7 +218,7 @@ def _attribute(thing: Any, name: str) -> str:
     shared = about.dtype.hasobject and size < _LARGE_FILE and count * size > _LARGE
     if count > _WIDEST or about.get_storage_size() > _LONGEST or shared:
         raise InputError(
-            f"the attribute {name!r} of {thing.name} holds {count} texts; one is expected, or one for each column",
+            f"the attribute {name!r} of {thing.name} holds {count} texts; one text is expected, or one for each column",
             place=str(thing.file.filename),
         )
     return _text(thing.attrs.get(name))

@@ -63,9 +63,9 @@ def take(dataset: Any, room: Room) -> None:
         refused.append("several filters")
     if refused:
         raise InputError(
-            f"{dataset.name} is packed by {refused[0]}, which is not read",
+            f"{dataset.name} is packed by {refused[0]}, which jointid cannot read",
             place=str(dataset.file.filename),
-            remedy="save it with gzip or lzf",
+            remedy="save the dataset with gzip or lzf",
         )
     for code, _, values, _ in described:
         if code == _LZF and (len(values) < 3 or values[2] < size):  # exactly the expected size
@@ -73,7 +73,9 @@ def take(dataset: Any, room: Room) -> None:
     most = dataset.file.id.get_filesize()
     for chunk, place in _chunks(dataset):
         if chunk.size > most:  # the library would reserve this much memory
-            raise ValueError(f"a chunk claims {chunk.size} bytes, but the file has {most}")
+            raise ValueError(
+                f"a chunk states {chunk.size} bytes, but the whole file has only {most}"
+            )
         held = _held(dataset, chunk, place, filters, size)
         if known and held is not None and held != size:
             least = "more than" if held > size else f"{held} of"

@@ -50,7 +50,7 @@ class Hdf5Table:
             vectors, left_out = vectors_of(file, self._room)
         if len(vectors) > MOST_COLUMNS:
             raise InputError(
-                f"it has more than {MOST_COLUMNS} columns, the largest number that is read",
+                f"the file has more than {MOST_COLUMNS} columns; at most {MOST_COLUMNS} are read",
                 place=str(path),
             )
         if not vectors:

@@ -49,9 +49,9 @@ def chosen_topic(path: Path, topics: Sequence[Topic], name: str | None, incomple
             remedy=tuple(_load(topic) for topic in read[:_SHOWN]),
         )
     raise InputError(
-        f"no topic holds joints, as sensor_msgs/JointState does; topics are {_listed(filled)}",
+        f"no topic holds joints, such as one of type sensor_msgs/JointState; topics are {_listed(filled)}",
         place=str(path),
-        remedy=_load(filled[0], "or another topic, and name its columns"),
+        remedy=_load(filled[0], "with this or another topic; state the topic's columns"),
     )
 
 

@@ -67,7 +67,7 @@ def collect(source: Source, topic: Topic) -> Collected:
         for block in found:
             columns.update(block.columns)
         if len(columns) > MOST_COLUMNS:
-            raise DamageError(f"its messages hold more than {MOST_COLUMNS} different numbers")
+            raise DamageError(f"its messages hold more than {MOST_COLUMNS} fields of numbers")
         log_times.append(_times(batch))
         if own is None:
             stamped = False

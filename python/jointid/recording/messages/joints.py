@@ -133,7 +133,7 @@ def _by_interfaces(where: Mapping[Path, int], names: Mapping[Path, str]) -> dict
             value = where.get(("interface_values", path[1], "values", path[3]))
             joint = names.get(("joint_names", path[1]))
             if value is None or joint is None:
-                raise DamageError("its values do not fit its names")
+                raise DamageError("its interface values do not match its joint names")
             _enter(found, joint, interface, value)
     return found
 

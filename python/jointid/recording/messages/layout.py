@@ -154,7 +154,7 @@ class _Walk:
     def _one(self, node: int, kind: Any, path: Path, depth: int) -> None:
         self._left -= 1
         if self._left < 0:
-            raise DamageError("it holds more elements than bytes")
+            raise DamageError("it states more elements than it has bytes")
         if node == _NAME:
             self.fields(kind, path, depth + 1)
         elif kind[0] == "string":

@@ -168,9 +168,7 @@ class McapSource:
             if isinstance(record, Footer):
                 return
             if record is None:
-                self.incomplete = (
-                    "the file ends early: its end is missing, as if the recorder was killed"
-                )
+                self.incomplete = "the end of the file is missing: perhaps the recorder was killed"
                 return
             if isinstance(record, Chunk):
                 yield from self._parts(content)

@@ -139,7 +139,7 @@ class MessageTable:
         jump = jump_between_publishers(values)
         if jump is not None:
             raise InputError(
-                f"the position jumps by {jump:.3g} and back from message to message, as if two nodes publish the "
+                f"the position jumps back and forth by {jump:.3g} between messages, as if two nodes published the "
                 "same joint on one topic",
                 place=f"{self.source}, column {self.headers[column]!r}",
                 remedy="log only one node, or each node on its own topic",

@@ -94,9 +94,9 @@ def _left_beside(path: Path) -> str:
         if log.stat().st_size:
             return (
                 f"its last messages may be in {log.name}, which is not read. To merge the two files, "
-                "open a copy of both with SQLite"
+                "copy both and open the copied bag with SQLite"
             )
     with suppress(OSError), journal.open("rb") as file:
         if file.read(len(_UNFINISHED)) == _UNFINISHED:
-            return f"its last write was not finished: the earlier content in {journal.name} is not restored"
+            return f"its last write was not finished; jointid does not restore the earlier content from {journal.name}"
     return ""

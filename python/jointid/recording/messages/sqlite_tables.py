@@ -56,7 +56,7 @@ def check_tables(connection: sqlite3.Connection, size: int) -> None:
                 held += each
                 if held > size:
                     raise DamageError(
-                        f"column {column} of {name}, before {read[-1]!r}, holds more than the file"
+                        f"column {column} of {name}, before {read[-1]!r}, holds more bytes than the file"
                     )
 
 

@@ -107,8 +107,8 @@ def separator_of(header: str, row: str, place: str) -> str:
         if len(by_blanks) > 1 and len(_between_blanks(header)) > 1:
             return BLANK
         raise InputError(
-            f"{header.strip()[:60]!r} has no separator; commas, semicolons, tabs or blanks are expected, "
-            "between at least time and position",
+            f"{header.strip()[:60]!r} has no separator; at least the columns time and position are expected, "
+            "separated by commas, semicolons, tabs or blanks",
             place=place,
         )
     return by_header

@@ -122,7 +122,7 @@ class CsvTable:
             if not self._rows and ending is not None:
                 raise InputError(no_sample(ending), place=self.source)
             if not self._rows:
-                raise InputError("a header, but no rows below it", place=self.header_place)
+                raise InputError("the file has a header, but no rows", place=self.header_place)
             self._refuse_ragged_rows()
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:
@@ -177,7 +177,7 @@ class CsvTable:
         for row, found in enumerate(numbers):
             if found is None or len(found) != width:
                 raise InputError(
-                    f"{cells[row][:40]!r} is not a list of {width} numbers, as in the first row",
+                    f"{cells[row][:40]!r} is not a list of {width} numbers; the first row has {width} numbers",
                     place=self.place(column, row),
                 )
         return np.array(numbers, dtype=np.float64)
@@ -249,8 +249,8 @@ class CsvTable:
                 if count > len(self.headers) and self._separator == ",":
                     hint = " (write decimal points, not commas)"
                 raise InputError(
-                    f"{count} cells where the header names {len(self.headers)}; every row needs one "
-                    f"for each header{hint}",
+                    f"{count} cells, but {len(self.headers)} headers; every row needs one cell per "
+                    f"header{hint}",
                     place=f"{self.source}, line {number}",
                 )
 
@@ -279,10 +279,10 @@ class CsvTable:
     def _appended(self, line: int) -> InputError:
         file = shlex.quote(str(self.source))
         return RepeatedHeaderError(
-            "the headers are repeated here: another file was appended",
+            "the headers are repeated here, as if another file was appended",
             place=f"{self.source}, line {line}",
-            remedy=f"cut it there (head -n {line - 1} {file} > run_1.csv; tail -n +{line} {file} > run_2.csv), and "
-            "give both files",
+            remedy=f"cut the file there (head -n {line - 1} {file} > run_1.csv; tail -n +{line} {file} > run_2.csv), "
+            "and give both files",
         )
 
 
@@ -320,8 +320,10 @@ def _no_number(cell: str) -> str:
         return f"{what}; decimal commas are read only where semicolons or tabs separate the cells"
     if re.search(r"\d:\d\d", cell):
         if re.search(r"\d/\d", cell):
-            return f"{what}; is it day/month or month/day? write dates like 2025-11-01 12:26:40.5"
-        return f"{what}; clock times are not read among numbers, seconds such as 0.25 are expected"
+            return f"{what}; the order of day and month is not clear; write dates like 2025-11-01 12:26:40.5"
+        return (
+            f"{what}; clock times among numbers cannot be read; seconds such as 0.25 are expected"
+        )
     return f"{what}; a number such as 0.25 is expected"
 
 

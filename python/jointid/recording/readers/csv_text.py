@@ -112,7 +112,7 @@ def _unzipped(path: Path, content: bytes) -> bytes:
         raise InputError(
             "the file is not compressed by gzip, although its name ends in .gz",
             place=str(path),
-            remedy="name it .csv if it is text",
+            remedy="rename the file to .csv if it is plain text",
         )
     try:
         text = Room(path, len(content)).gunzip(content)
@@ -120,7 +120,9 @@ def _unzipped(path: Path, content: bytes) -> bytes:
         return text
     except EOFError:
         raise InputError(
-            "the compressed file is truncated", place=str(path), remedy="copy or record it again"
+            "the compressed file is truncated",
+            place=str(path),
+            remedy="copy or record the file again",
         ) from None
     except zlib.error as error:
         reason = "CRC check failed" if "data check" in str(error) else reason_of(error)

@@ -72,7 +72,7 @@ class JsonTable:
         runs = {name: rows for name, rows in lists.items() if rows}
         if not runs:
             raise InputError(
-                "it holds no rows; a list of records, or lists of rows under the names of SysId's tests, are expected",
+                "the file holds no rows; it must be a list of records, or hold one list of rows for each SysId test",
                 place=self.source,
             )
         self._rows = [row for rows in runs.values() for row in rows]
@@ -147,7 +147,7 @@ class JsonTable:
             self._keys[header] = (index,)
         if self._factors:
             self.notes["converted"] = (
-                f"position and velocity are rotations times unitsPerRotation, {per_rotation:g}"
+                f"position and velocity are converted: rotations times unitsPerRotation ({per_rotation:g})"
             )
 
     def _put_in_order(self, ends: npt.NDArray[np.int_]) -> None:

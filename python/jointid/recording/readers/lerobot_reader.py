@@ -42,7 +42,9 @@ class StackedTable:
         self.headers = self._parts[0].headers
         for part in self._parts:
             if part.headers != self.headers:
-                raise InputError(f"its columns are not those of {files[0].name}", place=part.source)
+                raise InputError(
+                    f"its columns differ from the columns of {files[0].name}", place=part.source
+                )
         self._starts = np.cumsum([0, *(part.rows for part in self._parts)])
 
     def numbers(self, columns: Sequence[int]) -> list[FloatArray]:

@@ -29,7 +29,7 @@ from jointid.recording.wide.joint_in_table import joint_of_table
 from jointid.recording.wide.one_joint import OneJoint, of_joint
 
 _SURROGATE = "[\ud800-\udfff]"
-_SORT = "sort the rows by time, or cut the file where a second run begins"
+_SORT = "sort the rows by time, or cut the file at the start of its second run"
 
 
 @reads_open_files
@@ -214,7 +214,9 @@ def table_of(
 
                 table = with_episodes(table, file)
     except FileNotFoundError:
-        raise InputError("there is no such file", place=str(file)) from None
+        raise InputError(
+            "there is no such file", place=str(file), remedy="check the path"
+        ) from None
     except IsADirectoryError:
         raise InputError("this is a folder; a file name is expected", place=str(file)) from None
     except OSError as error:

@@ -72,7 +72,7 @@ def variables_of(content: bytes, order: str, room: Room) -> Iterator[Variable]:
         if kind == _COMPRESSED:
             ((kind, matrix),) = _inflated(element, order, room)
         if kind != _MATRIX:
-            raise DamageError(f"an element of the kind {kind} is in the place of a variable")
+            raise DamageError(f"an element has the kind {kind}; a variable is expected there")
         variable = _variable(matrix, order, nested=False)
         if variable.name:  # variables without a name hold MATLAB's internal objects
             yield variable
@@ -84,17 +84,17 @@ def _elements(content: memoryview, order: str) -> Iterator[tuple[int, memoryview
     while place < len(content):
         head = content[place : place + 8]
         if len(head) < 8:
-            raise DamageError("it ends inside the head of an element")
+            raise DamageError("the file ends inside the header of an element")
         kind, size = (int(word) for word in np.frombuffer(head, order + "u4"))
         if kind >> 16:  # kind and size share a word, up to four bytes follow it
             kind, size, first, step = kind & 0xFFFF, kind >> 16, place + 4, 8
             if size > 4:
-                raise DamageError("a short element is too long")
+                raise DamageError("a small-format element has more than 4 bytes")
         else:
             first = place + 8
             step = 8 + (size if kind == _COMPRESSED else -8 * (-size // 8))
         if first + size > len(content):
-            raise DamageError("an element reaches beyond its end")
+            raise DamageError("an element is longer than the rest of the file")
         yield kind, content[first : first + size]
         place += step
 
@@ -110,7 +110,7 @@ def _inflated(element: memoryview, order: str, room: Room) -> list[tuple[int, me
         raise DamageError("a compressed variable ends in the middle")
     inside = list(itertools.islice(_elements(memoryview(content), order), 2))
     if len(inside) != 1:
-        raise DamageError("a compressed element holds no single variable")
+        raise DamageError("a compressed element does not hold exactly one variable")
     return inside
 
 
@@ -153,7 +153,7 @@ def _struct(
 ) -> Iterator[tuple[Variable, ...]]:
     width = _numbers(_next(parts), order)
     if len(width) != 1 or not 0 < int(width[0]) <= 1024:
-        raise DamageError("a struct has no length of field names")
+        raise DamageError("a struct does not state the length of its field names")
     listed, step = bytes(_next(parts)[1]), int(width[0])
     fields = -(-len(listed) // step)
     if fields > _MOST_FIELDS or count * fields > _MOST_ELEMENTS:
@@ -179,7 +179,7 @@ def _matrix(element: tuple[int, memoryview], order: str) -> Variable:
 def _numbers(element: tuple[int, memoryview], order: str) -> Array:
     kind, content = element
     if kind not in _STORED:
-        raise DamageError(f"an element of the kind {kind} is in the place of numbers")
+        raise DamageError(f"an element has the kind {kind}; numbers are expected there")
     dtype = np.dtype(order + _STORED[kind])
     if len(content) % dtype.itemsize:
         raise DamageError("a number is truncated")

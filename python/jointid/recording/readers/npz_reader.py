@@ -56,7 +56,7 @@ class NpzTable:
         content = io.BytesIO(path.read_bytes())
         if not zipfile.is_zipfile(content):
             raise InputError(
-                "the file is not a .npz archive, or is truncated; numpy.savez writes one",
+                "the file is not a .npz archive, or is truncated; numpy.savez writes such archives",
                 place=str(path),
             )
         content.seek(0)
@@ -71,7 +71,7 @@ class NpzTable:
         for each in archive.zip.infolist():
             if each.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
                 raise InputError(
-                    "it is packed by a method that numpy.savez_compressed does not use",
+                    "its compression method differs from the method of numpy.savez_compressed",
                     place=self._place(each.filename.removesuffix(".npy")),
                 )
         self._sizes = {
@@ -150,7 +150,7 @@ class NpzTable:
         except _damages() as error:
             if "allow_pickle" in str(error):
                 raise InputError(
-                    "it holds Python objects (a pickle), which are never read",
+                    "it holds Python objects (a pickle); jointid never reads pickles",
                     place=self._place(name),
                     remedy="save it as an array of floats",
                 ) from None

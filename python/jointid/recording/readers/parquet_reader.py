@@ -118,7 +118,7 @@ class ParquetTable:
                 whole = set(rows.value_lengths().to_pylist()) == {width}
             if not whole:
                 raise InputError(
-                    f"a list of {width} numbers is expected in every row, as in the first",
+                    f"every row needs a list of {width} numbers, as the first row has",
                     place=f"{self._place(column)}, in rows {row} to {row + len(rows) - 1}",
                 )
             place = self._place(column)

@@ -67,7 +67,7 @@ def reader_of(path: Path) -> Reader:
             return reader
     if name.endswith(_PICKLES):
         raise InputError(
-            "this is a pickle of PyTorch, which may run code and is never read",
+            "this is a PyTorch pickle; jointid never reads pickles, because they may run code",
             place=str(path),
             remedy=f"convert it with {_conversion(path)}",
         )

@@ -98,7 +98,7 @@ class ScopeTable:
                 keys[cells[0]] = cells
                 name_line = k if cells[0] == "Name" else name_line
         if first < 0 or name_line < 0:
-            raise InputError("TwinCAT Scope's header, but no rows below it", place=source)
+            raise InputError("the file has TwinCAT Scope's header, but no rows", place=source)
         self.header_place = f"{source}, line {name_line + 1}"
         self._first = first
         self._groups = _groups(keys["Name"])
@@ -183,8 +183,8 @@ class ScopeTable:
         period = median(np.diff(time)) if len(time) > 1 else 0.0
         if time[0] - period > base[0] or time[-1] + period < base[-1]:
             raise InputError(
-                f"its samples are from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, those of the others from "
-                f"{base[0] / 1e3:.6g} to {base[-1] / 1e3:.6g} s",
+                f"its samples reach from {time[0] / 1e3:.6g} to {time[-1] / 1e3:.6g} s, but the samples of the other "
+                f"channels reach from {base[0] / 1e3:.6g} to {base[-1] / 1e3:.6g} s",
                 place=f"{self.source}, channel {self.headers[column]!r}",
             )
 

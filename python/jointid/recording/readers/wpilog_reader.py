@@ -100,7 +100,9 @@ class WpilogTable:
         if column == 0:
             return signal_array("", (self._stamps - self._stamps[0]) / 1e6)
         if self._runs and column == len(self.headers) - 1:
-            raise InputError("this entry names runs; numbers are expected", place=self.source)
+            raise InputError(
+                "this entry holds the names of runs; numbers are expected", place=self.source
+            )
         stamps, values = self._channels[self.headers[column]]
         times, first = np.unique(stamps, return_index=True)
         return np.interp(self._stamps, times, np.array(values, dtype=np.float64)[first])

@@ -45,7 +45,7 @@ def on_one_clock(
     if len(clocks) > 1 and (named or sizes.count(best) > 1):
         other = clocks[1][0]
         raise InputError(
-            f"{names[other]} was logged at other times than {names[0]}",
+            f"{names[other]} and {names[0]} were logged at different times",
             argument="joints",
             place=place,
             remedy=tuple(

@@ -150,12 +150,12 @@ def _choose_torque(
 
 def _without_side(table: Table, column: JointHeader) -> InputError:
     return InputError(
-        f"{table.headers[column.index]!r} does not say on which side of the gear it is, and the position of joint "
+        f"{table.headers[column.index]!r} does not show its side of the gear, and the position of joint "
         f"{column.joint} is on the motor side",
         place=table.header_place,
         remedy=(
-            _naming("motor_torque", column, "if it is the motor's"),
-            _naming("torque", column, "if it is the joint's"),
+            _naming("motor_torque", column, "for a motor-side torque"),
+            _naming("torque", column, "for a joint-side torque"),
         ),
     )
 
@@ -177,7 +177,7 @@ def _ask(
     names = " and ".join(repr(table.headers[each.index]) for each in asked[:2])
     raise InputError(
         f"{joint_phrase(asked[0].joint)} has no measured torque or current; "
-        f"{names} {'is' if len(asked) == 1 else 'are'} commanded or filtered, and not used unless named",
+        f"{names} {'is' if len(asked) == 1 else 'are'} commanded or filtered and must be chosen explicitly",
         place=table.header_place,
         remedy=(
             *(_naming(each.meaning.signal, each) for each in asked[:2] if each.meaning),

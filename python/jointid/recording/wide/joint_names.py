@@ -54,7 +54,7 @@ def joint_named(
         f"{'the only one is' if len(joints) == 1 else 'there are'} {', '.join(joints) or 'none'}"
     )
     if number is not None and not numbered:
-        names += ", which have no common numbering" if len(joints) > 1 else ""
+        names += "; the joints have no common numbering" if len(joints) > 1 else ""
     near = _near(text, joints) if number is None else ""
     remedy: str | Action | tuple[()] = f"did you mean {near!r}" if near else ()
     if number is not None and not numbered and function and joints:

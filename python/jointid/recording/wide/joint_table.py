@@ -161,7 +161,7 @@ def nothing_named(table: Table, joint: object, argument: str = "joint") -> Input
     from jointid.recording.blocks import OF_BLOCKS
 
     return InputError(
-        f"the headers name no joints with a position; they are {listed(table.headers)}",
+        f"no header names the position of a joint; the headers are {listed(table.headers)}",
         argument=argument,
         value=joint,
         place=table.header_place,

@@ -32,25 +32,25 @@ from jointid.recording.wide.robot_signals import (
 class RobotRecording(RobotSamples, Mapping[str, Recording]):
     """The signals of several joints on one clock, read-only; a mapping from a joint's name to its recording.
 
-    Arrays have one row per sample and one column per joint. If a joint lacks a signal, its column is NaN.
+    Arrays have one row per sample and one column per joint. A joint's missing signal is a column of NaN.
 
     Parameters
     ----------
     time : array_like, shape (n,)
         Time stamps [s], strictly increasing; n is at least 8.
     position : array_like, shape (n, joints)
-        [rad], or [m] with ``kind="prismatic"``.
+        Positions of the joints [rad], or [m] with ``kind="prismatic"``.
     velocity : array_like, shape (n, joints), optional
-        [rad/s] or [m/s]. Default: derived from the positions, as by `Recording`.
+        Velocities of the joints [rad/s] or [m/s]. Default: derived from the positions, as in `Recording`.
     torque : array_like, shape (n, joints), optional
         Torque of the actuators [N·m], on the side of the gear that `side` names.
     motor_torque, current, sensor, reference, link_position, temperature : array_like, shape (n, joints), optional
-        As in `Recording`; the reference is on the side of the gear that `side` names.
+        Signals as in `Recording`. The reference is on the side of the gear that `side` names.
     side : {"joint", "motor"}
-        Side of the gear of position, velocity and torque. Default ``"joint"``.
+        Side of the gear on which position, velocity and torque are recorded. Default ``"joint"``.
     gear_ratio : sequence of float, optional
-        Motor angle per joint angle, one value per joint, negative if they turn in opposite directions. With it,
-        each joint's recording is on the joint side. Default: not known.
+        Motor angle per joint angle, one value per joint; negative if motor and joint turn in opposite directions.
+        With gear ratios, each joint's recording is on the joint side. Default: not known.
     names : sequence of str, optional
         Names of the joints. Default: "1", "2", ...
     extra : mapping of str to array_like, shape (n,) or (n, joints), optional
@@ -58,7 +58,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     kind : {"revolute", "prismatic"}
         Kind of all joints. Default ``"revolute"``.
     torque_hold : {"zoh", "linear"}, optional
-        As in `Recording`. Default: not known.
+        Torque between samples, as in `Recording`. Default: not known.
     velocity_derived : bool
         Whether `velocity` was derived from the position. Default False.
     name : str
@@ -69,8 +69,8 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     Raises
     ------
     InputError
-        A signal has another shape or is not finite; time does not strictly increase; two joints have the same name;
-        or an option has an unknown value.
+        A signal has a wrong shape or is not finite, or time does not strictly increase. Two joints have the same
+        name, or an option has an unknown value.
 
     Examples
     --------
@@ -109,7 +109,7 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         check_attributes(kind, torque_hold, name, velocity_derived)
         if side not in SIDES:
             raise InputError(
-                f"{JOINT} or {MOTOR} is expected: the side of position, velocity and torque",
+                f"{JOINT} or {MOTOR} is expected as the side of position, velocity and torque",
                 argument="side",
                 value=side,
             )
@@ -145,12 +145,13 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         Parameters
         ----------
         joint : str or int
-            Name or number: 3 is "3", or "joint_3" if all names have the same form with different numbers.
+            Name or number of the joint. The number 3 means "3", or "joint_3" if all names differ only in their
+            number.
 
         Returns
         -------
         Recording
-            Without a known gear ratio, motor-side values stay on the motor side; ``metadata["side"]`` is "motor".
+            Without a gear ratio, motor-side values stay on the motor side, and ``metadata["side"]`` is "motor".
 
         Raises
         ------
@@ -195,12 +196,12 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return tuple(self.joint(name) for name in self.names)
 
     def select(self, joints: Iterable[str | int]) -> Self:
-        """Return the recording of these joints, in this order; sets ``metadata["joints_listed"]``.
+        """Return the recording of these joints, in this order, with ``metadata["joints_listed"]`` True.
 
         Raises
         ------
         InputError
-            There is no such joint, or none is named.
+            There is no such joint, or `joints` is empty.
         """
         place = self.name or "robot recording"
         names = [joint_named(each, self.names, place, "joints") for each in joints]
@@ -231,14 +232,14 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
         return type(self)(**{**self.fields(), "gear_ratio": gear_ratio})
 
     def with_torque_constants(self, torque_constants: Sequence[float] | FloatArray) -> Self:
-        """Return the recording with torques from its currents, on the side that `side` names.
+        """Return the recording with torques from its currents, on the recording's `side` of the gear.
 
         Parameters
         ----------
         torque_constants : sequence of float
-            Torque constants of the motors [N·m/A], one value per joint, negative if a positive current turns the
-            joint backward. Gear ratios multiply them on the joint side; without gear ratios they are joint-side
-            constants.
+            Torque constants of the motors [N·m/A], one value per joint; negative if a positive current turns the
+            joint backward. On the joint side, torque constants are multiplied by the gear ratios. Without gear
+            ratios, state joint-side torque constants.
 
         Raises
         ------
@@ -257,14 +258,15 @@ class RobotRecording(RobotSamples, Mapping[str, Recording]):
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the recording to a file (.npz, .csv, .csv.gz), completely or not at all.
 
-        ``load(path, joints="all")`` returns an equal recording, bit for bit; ``load(path, joint=...)`` one joint.
+        ``load(path, joints="all")`` reads a bit-identical recording; ``load(path, joint=...)`` reads one joint's
+        recording.
 
         Raises
         ------
         InputError
-            The name has another ending, or the folder does not exist.
+            The file name has another ending, or the folder does not exist.
         OSError
-            The file cannot be written; an existing one is untouched.
+            The file cannot be written; an existing file is unchanged.
         """
         from jointid.recording.wide.robot_saving import save_robot
 

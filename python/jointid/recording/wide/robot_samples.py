@@ -32,7 +32,7 @@ class RobotSamples:
 
     @property
     def signals(self) -> tuple[str, ...]:
-        """Names of the signals present, time first, always in the same order."""
+        """Names of the recorded signals in a fixed order, time first."""
         return ("time", *(name for name in ROBOT_SIGNALS if getattr(self, name) is not None))
 
     @property

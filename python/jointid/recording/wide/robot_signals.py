@@ -167,11 +167,14 @@ def value_of_each(argument: str, values: object, joints: int, function: str) -> 
     if array.shape == (1,) and joints > 1 and np.isfinite(array[0]) and array[0] != 0.0:
         single = float(array[0])
         raise InputError(
-            f"one {what} is given for {joints} joints, but each joint has its own",
+            f"one {what} is given for {joints} joints, but each joint needs its own {what}",
             argument=argument,
             value=single,
             remedy=Action(
-                "call", {argument: [single] * joints}, "if all have it", function=function
+                "call",
+                {argument: [single] * joints},
+                "if all joints have this value",
+                function=function,
             ),
         )
     if array.shape != (joints,):

@@ -24,5 +24,7 @@ def ending_of_page(argument: str, path: Path) -> str:
     ending = path.suffix.lower()
     if ending not in RENDERERS:
         known = ", ".join(RENDERERS)
-        raise InputError(f"a report ends in one of {known}", argument=argument, value=path)
+        raise InputError(
+            f"the file of a report ends in one of {known}", argument=argument, value=path
+        )
     return ending

@@ -22,7 +22,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
         ("combination", "value ± std. error"),
     )
     said = paragraph(
-        "Combinations of the links' inertial parameters that motion shows, about each joint's own frame."
+        "Combinations of the links' inertial parameters that the motion determines, in the frame of each joint."
     )
     name = f"{extras.prefix}base-parameters"
     return [Part("Base parameters", (said, table), name, "folded")]

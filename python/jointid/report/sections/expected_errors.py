@@ -30,5 +30,5 @@ def content(result: Result, extras: Extras) -> list[Part]:
         (each.name, *cells) for each, *cells in zip(quantities, *columns.values(), strict=True)
     ]
     table = Table(tuple(rows), ("parameter", *columns))
-    said = paragraph("Expected standard errors of one recording of this motion.", muted=True)
+    said = paragraph("Expected standard errors for one recording of this motion.", muted=True)
     return [Part("Expected errors", (table, said), f"{extras.prefix}errors", "half")]

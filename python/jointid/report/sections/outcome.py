@@ -25,14 +25,14 @@ def content(result: Result, extras: Extras) -> list[Part]:
 def next_step(result: Commissioning, action: Callable[[Action], str] = str) -> str:
     """Return the next step, in a sentence."""
     if any(run.recording.metadata.get("stop") for run in result.runs):
-        return "Next: find out why the limit was reached before the joint moves again."
+        return "Next: before the joint moves again, find out why the limit was reached."
     if not result.estimates:
         return "Next: identify the joint from the recordings."
     warned = [found for found in result.estimates[-1].warnings if found.advice]
     if result.blocked is None and result.improvement < _SMALL:
-        return "Next: do not use these values; the joint does not follow better with them."
+        return "Next: do not use these values; they do not reduce the tracking error."
     if warned:
         return f"Next: {action(warned[0].advice[0])} (finding {warned[0].code})."
     if result.blocked is not None:
         return ""
-    return "Next: save these values to the joint file; no finding warns of them."
+    return "Next: save these values to the joint file; no finding advises against this."

@@ -13,11 +13,11 @@ from jointid.report.page.extras import Extras
 
 _MOST = 16  # number of runs with a picture
 _SERVO = (
-    "Each run starts from its logged initial state; only the reference position, the supply, and when the motor is "
-    "driven come from the log."
+    'Each run starts from its logged initial state. Only reference position, supply voltage and the signal "driven" '
+    "come from the log."
 )
 _ROBOT = "The logged torques move the arm."
-_DRIVEN = "The position loop moves the arm; only the wanted positions and the initial state come from the log."
+_DRIVEN = "The position loop moves the arm; only the reference positions and the initial state come from the log."
 
 
 def content(result: Result, extras: Extras) -> list[Part]:

@@ -21,9 +21,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
     session = cast("Commissioning", result)
     prefix = extras.prefix
     margins = table_of(margin_rows([run.recording for run in session.runs]))
-    reached = paragraph(
-        "The largest recorded values of all runs, and their share of the limit.", True
-    )
+    reached = paragraph("The largest recorded value of all runs, and its share of the limit.", True)
     parts = [
         Part("Limits", (margins, reached), f"{prefix}limits", "half"),
         Part("Stops", _stops(session), f"{prefix}stops", "half"),

@@ -47,7 +47,7 @@ def _require_those_of(estimate: Estimate, extras: Extras) -> None:
     wanted = [run["fingerprint"] for run in estimate.settings["recordings"]]
     if shown != wanted:
         raise InputError(
-            f"{', '.join(shown)}: the estimate was made from {', '.join(wanted)}",
+            f"these have the fingerprints {', '.join(shown)}; the estimate was made from {', '.join(wanted)}",
             argument="recordings",
             remedy="give the recordings that identify() had, in the same order",
         )

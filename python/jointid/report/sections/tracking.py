@@ -20,7 +20,7 @@ def content(result: Result, extras: Extras) -> list[Part]:
     from jointid.commissioning.result import run_rows
 
     session = cast("Commissioning", result)
-    what = paragraph("By the encoder, without the first sixth of each run.", muted=True)
+    what = paragraph("Measured with the encoder, without the first sixth of each run.", muted=True)
     prefix = extras.prefix
     parts = [Part("Tracking error", (Figure(tracking(session)),), f"{prefix}tracking", "half")]
     if session.estimates:

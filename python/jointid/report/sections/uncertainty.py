@@ -25,13 +25,13 @@ def content(result: Result, extras: Extras) -> list[Part]:
         blocks += [
             _other_windows(found),
             paragraph(
-                "Change of each value with windows of half and twice the length; about one standard error is usual.",
+                "Change of each value with windows of half and twice the length. One standard error is a usual change.",
                 muted=True,
             ),
             _correlation(cast("Estimate", result)),
             paragraph(
-                "Correlation of the estimates, offsets at the mean reading. Near ±1, two parameters look the same in "
-                "the data.",
+                "Correlation of the parameters. Offsets refer to the mean reading. If a correlation is near ±1, "
+                "two parameters look the same in the data.",
                 muted=True,
             ),
         ]

@@ -49,8 +49,8 @@ def _note(shown: Mapping[str, list[str]]) -> list[Block]:
         return []
     return [
         paragraph(
-            "± std. error covers random noise. ± systematic covers errors that more data does not reduce, with "
-            "the main source.",
+            "± std. error covers random noise. ± systematic covers errors that more data do not reduce; "
+            "the table names their main source.",
             muted=True,
         )
     ]

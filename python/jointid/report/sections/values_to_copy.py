@@ -19,11 +19,11 @@ def content(result: Result, extras: Extras) -> list[Part]:
     """Return the blocks, folded."""
     estimate = cast("Estimate", result)
     blocks = (
-        paragraph("As a joint file has them, with all digits:"),
+        paragraph("As lines of a joint file, with all digits:"),
         Code(joint_file_lines(estimate)),
         paragraph("As a table, for spreadsheets:"),
         Code(table_lines(estimate)),
-        paragraph("The call that finds the same values again, with the settings that it chose:"),
+        paragraph("The call that finds the same values again, with all settings:"),
         Code(program(estimate)),
     )
     return [Part("Values to copy", blocks, f"{extras.prefix}values", "folded")]
@@ -80,7 +80,7 @@ def program(estimate: Estimate) -> str:
             "import jointid as jid",
             "",
             f"# {what}: {named}",
-            "# joint: as it was given, or None; so are parameters that the call fixed or limited",
+            "# joint: the joint of the first call, or None; also copy the argument parameters of that call",
             "estimate = jid.identify(",
             f"    {what},",
             "    joint,",

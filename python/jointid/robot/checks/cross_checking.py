@@ -64,7 +64,7 @@ def cross_checked(
         other,
     )
     if not look.matrix:
-        return CrossCheck(reason="no joint moves fast enough for long enough")
+        return CrossCheck(reason="no joint has enough fast motion")
     found = {
         f"{joint.name}.{name}": _compared(attempt, look, k, name)
         for k, joint in enumerate(joints)
@@ -78,7 +78,7 @@ def cross_checked(
         parameters=found,
         residuals=residuals,
         agrees=(all(said) and not worse) if said or worse else None,
-        reason="" if said or worse else "the cross-check determines none of the values",
+        reason="" if said or worse else "the cross-check determines no parameter",
     )
 
 
@@ -106,7 +106,7 @@ def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Comp
     if joint not in look.matrix:
         return Compared(value=value, stderr=stderr, reason="too few rows of fast motion")
     if name == "rotor_inertia" and look.recorded:
-        reason = "the recorded velocity explains more, but a late velocity looks like inertia"
+        reason = "the cross-check uses the recorded velocity; a late velocity would look like rotor inertia"
         return Compared(value=value, stderr=stderr, reason=reason)
     label = (joint, name)
     second, error, spread = look.values[label], look.errors[label], look.spread[label]
@@ -118,7 +118,9 @@ def _compared(attempt: Attempt, look: SecondLook, joint: int, name: str) -> Comp
     little = _MATTERS * look.size[joint] / felt
     if not doubt < max(_VAGUE * scale, little):
         return Compared(
-            value=value, stderr=stderr, reason="the cross-check does not determine it well enough"
+            value=value,
+            stderr=stderr,
+            reason="the cross-check does not determine this value well enough",
         )
     return Compared(
         value=value,
@@ -170,13 +172,11 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
         more = f" and {len(apart) - _SHOWN} more" if len(apart) > _SHOWN else ""
         texts.append(f"it gives other values: {', '.join(shown[:_SHOWN])}{more}")
     advice: tuple[Action, ...] = (
-        Action("call", {"min_speed": slow}, text="if friction at low speed is the cause"),
+        Action("call", {"min_speed": slow}, text="if the friction model is wrong at low speed"),
     )
     if worse:
         joint, (ours, second) = max(worse.items(), key=lambda each: each[1][0] / each[1][1])
-        title = (
-            f"leaves {percent(second)} of the torque of {joint} unexplained, not {percent(ours)}"
-        )
+        title = f"leaves {percent(second)} of the torque of {joint} unexplained, the identification {percent(ours)}"
         texts.append(f"it {title}")
         advice = ()
     yield TYPES["cross_check"].finding(
@@ -185,7 +185,7 @@ def disagreement(found: CrossCheck, slow: float) -> Iterator[Finding]:
         Action("inspect", text="the time stamps and the logger"),
         details="; ".join(
             (
-                "the cross-check is a plain filtered least squares on the signals as recorded",
+                "the cross-check is a simple least-squares fit to the filtered recorded signals",
                 *texts,
                 "the identification probably mishandles time stamps, gaps, delays or slow motion of this recording",
             )

@@ -144,7 +144,7 @@ def _finding(
     torques = "torques" if robot.drive is None else "wanted positions"
     what = "columns" if kind == "joints" else torques
     order = f"the right order of the {what} is {', '.join(right)}"
-    advice = Action("inspect", text=f"the order and names of the columns; {order}")
+    advice = Action("inspect", text=f"the order and names of the columns: {order}")
     if kind == "joints" and not is_named:
         advice = Action("call", {"joints": right}, function="load_robot")
     title = (
@@ -158,7 +158,7 @@ def _finding(
         titled(title, f"{was} unexplained, {after} if corrected"),
         advice,
         details="; ".join(
-            f"the values of {name} are in the {what} of {column}"
+            f"the {what} of {column} hold the values of {name}"
             for name, column in pairs
             if name in moved
         ),

@@ -96,11 +96,11 @@ def _several(
     names = [robot.names[joint] for joint in off]
     shown = ", ".join(f"{robot.names[joint]} {sure[joint].value:.3g}" for joint in off)
     return TYPES["different_factors"].finding(
-        f"the torques of {listed(names)} differ from the URDF, each by its own factor",
+        f"the torques of {listed(names)} differ from the weight of the URDF's links, each by its own factor",
         _divided(robot, factors),
-        details=f"factors: {shown}; one {one} was probably used for all joints; with these factors "
-        f"{percent(float(np.sqrt(left / len(sure))))} of the torques stays unexplained, without them "
-        f"{percent(float(np.sqrt(before / len(sure))))}",
+        details=f"factors: {shown}; the same {one} was probably used for all joints; "
+        f"{percent(float(np.sqrt(left / len(sure))))} of the torques stays unexplained with these factors, "
+        f"{percent(float(np.sqrt(before / len(sure))))} without these factors",
         evidence={robot.names[joint]: Measured(sure[joint].value) for joint in off},
     )
 
@@ -206,9 +206,9 @@ def _unsigned(
         else f"the torques of {listed(names)} are never negative: their signs are missing",
         Action(
             "inspect",
-            text="the driver's signed value (if a servo has no such value: the sign of its position error)",
+            text="whether the driver has a signed value (otherwise use the sign of the servo's position error)",
         ),
-        details="the joints move both ways, and the magnitude fits a torque that changes its sign"
+        details="the joints move in both directions, and the values fit the magnitude of a torque that changes its sign"
         + (f"; joints: {', '.join(names)}" if len(names) > 1 else ""),
         parameters=()
         if len(folded) == robot.n
@@ -238,7 +238,7 @@ def _divided(robot: Robot, factors: Sequence[float]) -> Action:
     return Action(
         "call",
         facts_of_scales(robot.drive, _scales(robot, factors), robot.torque_scales),
-        text="so that the torques fit the URDF, until the factors are known",
+        text="use these factors until the true factors are known",
         function="Robot.from_urdf",
     )
 
@@ -258,19 +258,19 @@ def _scaled(robot: Robot, given: Mapping[int, LinkFactor], common: float) -> Fin
     sure = {joint: factor.value for joint, factor in given.items() if factor.sure}
     size = abs(common)
     times = f"{1.0 / size:.2g} times smaller" if size < 1.0 else f"{size:.2g} times larger"
-    sign = ", and reversed" if common < 0.0 else ""
+    sign = ", and have the opposite sign" if common < 0.0 else ""
     left = percent(float(np.sqrt(np.median([e.left for e in given.values()]))))
     what = (
-        "the gains or the masses of the URDF are probably not those of the robot"
+        "the stated gains or the URDF's masses probably differ from the robot's"
         if robot.drive is not None
         else "the torques are probably currents or motor-side torques"
         if size < 1.0
-        else "the torques are probably in another unit, or the masses of the URDF are not those of the robot"
+        else "the torques are probably in another unit, or the URDF's masses differ from the robot's masses"
     )
     return TYPES["scaled_torques"].finding(
         f"all torques are about {times} than the weight of the URDF's links{sign}",
         _divided(robot, [sure.get(joint, common) for joint in range(robot.n)]),
-        details=f"{what}; with one factor for each joint the URDF explains all but {left} of the torques",
+        details=f"{what}; with one factor for each joint, {left} of the torques stays unexplained",
         evidence={
             "factor": Measured(common),
             **{robot.names[joint]: Measured(value) for joint, value in sure.items()},

@@ -31,7 +31,7 @@ def assumption_findings(
         if columns == list(range(robot.n)) and not set(taken) & set(robot.names):
             pairs = zip(robot.names, taken, strict=True)
             yield TYPES["joints_in_order"].finding(
-                "the recording does not name the URDF's joints; its joints are taken in the URDF's order",
+                "the recording does not name the URDF's joints; the recorded joints are taken in the URDF's order",
                 details=", ".join(f"{name} is {each}" for name, each in pairs),
             )
             break
@@ -52,7 +52,7 @@ def _left_out(recordings: Sequence[RobotRecording]) -> Iterator[Finding]:
         )
     if others:
         yield TYPES["joints_left_out"].finding(
-            f"left out: {listed([*others])}, logged at other times than the robot's joints",
+            f"left out: {listed([*others])}, because the robot's joints were logged at other times",
             details="; ".join(f"{name}: {why}" for name, why in others.items()),
         )
 
@@ -67,8 +67,8 @@ def _locked(recordings: Sequence[RobotRecording], robot: Robot) -> Iterator[Find
         ]
         if spans and max(spans) > _MOVES:
             yield TYPES["locked_joint_moves"].finding(
-                f"{name} moves by {max(spans):.3g} and is not one of the robot's joints",
-                Action("inspect", text=f"the list of the robot's joints, which lacks {name}"),
+                f"{name} moves by {max(spans):.3g} (rad or m) and is not one of the robot's joints",
+                Action("inspect", text=f"the list of the robot's joints: {name} is missing there"),
                 details=f"{name} is assumed to stay at 0",
                 evidence={"range": Measured(max(spans))},
             )

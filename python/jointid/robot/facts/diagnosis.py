@@ -239,7 +239,8 @@ def _summary(
     if poor:
         found.append(
             TYPES["more_wrong_facts"].finding(
-                f"{facts} do{'es' * (len(causes) == 1)} not explain everything: {listed(poor)} would still fit badly",
+                f"{facts} do{'es' * (len(causes) == 1)} not explain the whole residual: {listed(poor)} would still "
+                "fit badly",
                 Action("inspect", text=f"the given facts of {listed(poor)}"),
                 evidence=evidence,
             )

@@ -240,4 +240,9 @@ class FittedJoint(FittedBalance):
 
     def _alone(self) -> tuple[Action, ...]:
         name = self.attempt.robot.names[self.joint]
-        return (Action("inspect", text=f"{name} as a single joint, which has more terms"),)
+        return (
+            Action(
+                "inspect",
+                text=f"{name} identified alone, with more friction terms than in this model",
+            ),
+        )

@@ -37,15 +37,15 @@ def turned_zeros(zeros: Zeros, robot: Robot) -> Finding:
         if angle
     ]
     return TYPES["turned_zero"].finding(
-        titled("log and URDF count joints from different zeros", listed(turned)),
+        titled("log and URDF have different zero positions", listed(turned)),
         Action(
             "call",
             {"zero_offsets": [round(each, 6) for each in zeros.offsets]},
-            text="if this is right",
+            text="if these offsets are right",
             function="Robot.from_urdf",
         ),
-        details=f"the offsets {', '.join(turned)} are applied; with the URDF's inertias {percent(zeros.after)} of the "
-        f"torque stays unexplained with these offsets, {percent(zeros.before)} without them",
+        details=f"the offsets {', '.join(turned)} are applied; with the URDF's inertias, {percent(zeros.after)} of the "
+        f"torque stays unexplained with these offsets, {percent(zeros.before)} without these offsets",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
 
@@ -60,7 +60,7 @@ def stated_zeros(zeros: Zeros, robot: Robot) -> Finding:
     return TYPES[ZERO].finding(
         titled("stated zeros are off", listed(turned)),
         _call({"zero_offsets": [round(each, 6) for each in robot.zero_offsets or ()]}),
-        details=f"{', '.join(turned)}; with the URDF's inertias {percent(zeros.before)} of the torque stays "
+        details=f"{', '.join(turned)}; with the URDF's inertias, {percent(zeros.before)} of the torque stays "
         f"unexplained with the stated zeros, {percent(zeros.after)} with the corrected zeros",
         evidence={"before": Measured(zeros.before), "after": Measured(zeros.after)},
     )
@@ -70,14 +70,12 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
     """Return the finding that a corrected fact explains most of the residual; `shown`: the joint of the residual."""
     first, *others = wrong.joints
     both = " and ".join(wrong.joints)
-    coupling = (
-        f"motor {first} probably turns with {' and '.join(others)} by {wrong.coupling or 0.0:g}"
-    )
+    coupling = f"the coupling of motor {first} to {' and '.join(others)} is probably {wrong.coupling or 0.0:g}"
     texts = {
         "swapped_joints": (f"the columns of {both} are probably exchanged", ""),
         "swapped_torques": (f"the torques of {both} are probably exchanged", ""),
         "wrong_sign": (
-            f"{first} probably turns the other way",
+            f"{first} probably turns in the opposite direction",
             f"its position and torque, or its gear ratio, have the wrong sign{_or_other(wrong)}; ",
         ),
         "wrong_motion_sign": (
@@ -105,7 +103,7 @@ def named_fact(wrong: WrongFact, shown: str) -> Finding:
     return TYPES[wrong.kind].finding(
         titled(title, f"{before} unexplained, {after} if corrected"),
         *advice,
-        details=f"{details}{before} of the torque of {shown} stays unexplained, {after} if this is corrected",
+        details=f"{details}{before} of the torque of {shown} stays unexplained, {after} after the correction",
         evidence={"before": Measured(wrong.before), "after": Measured(wrong.after)},
     )
 
@@ -116,7 +114,9 @@ def named_error(error: SmallError, names: Sequence[str]) -> Finding:
         error, "" if error.joint is None else names[error.joint]
     )
     others = [f"or {_NOUNS[kind].format(names[joint or 0])}" for kind, joint in error.others]
-    held_out = f"this explains {percent(error.share)} of the squared residual in held-out motion"
+    held_out = (
+        f"this error explains {percent(error.share)} of the squared residual in held-out motion"
+    )
     return TYPES[error.kind].finding(
         title,
         *advice,
@@ -128,9 +128,9 @@ def named_error(error: SmallError, names: Sequence[str]) -> Finding:
 _NOUNS = {
     TILT: "the base is not upright",
     ZERO: "the zero of {} is off",
-    TORQUE: "the torque of {} is scaled",
-    LINK: "the link that {} moves has another weight",
-    CENTRE: "the link that {} moves has another centre of mass",
+    TORQUE: "the torque of {} has a wrong factor",
+    LINK: "the weight of the link that {} moves differs from the URDF",
+    CENTRE: "the centre of mass of the link that {} moves differs from the URDF",
     PAYLOAD: "the link that {} moves carries a body",
 }
 
@@ -146,7 +146,7 @@ def _tilted(error: SmallError, _: str) -> _Worded:
     spread = float(np.rad2deg(np.linalg.norm(error.errors)))
     return (
         f"the base is tilted by {_with_error(degrees, spread)} degrees",
-        "the direction of gravity differs from the facts",
+        "gravity has another direction than in the facts",
         {"tilt": Measured(degrees, "deg"), "tilt_error": Measured(spread, "deg")},
         (_call({"gravity": [round(float(each), 3) for each in gravity]}),),
     )
@@ -182,7 +182,7 @@ def _link(error: SmallError, name: str) -> _Worded:
     value, spread = 1.0 + float(error.values[0]), float(error.errors[0])
     return (
         f"the link that {name} moves has {_with_error(value, spread)} times the URDF's inertia",
-        "mass, centre of mass and inertia are scaled together",
+        "one factor multiplies mass, first moment and inertia",
         {"scale": Measured(value), "stderr": Measured(spread)},
         (Action("call", {"inertia": SCALED}, function="identify_robot"),),
     )
@@ -196,8 +196,8 @@ def _centre(error: SmallError, name: str) -> _Worded:
     free = [axis for axis in "xyz" if axis not in seen]
     return (
         f"the centre of mass of the link that {name} moves is off by {shown} mm",
-        "in the link's frame, relative to the URDF"
-        + (f"; the motion does not show {' and '.join(free)}" if free else ""),
+        "in the link's frame, measured from the URDF's centre of mass"
+        + (f"; the motion does not show the offset along {' and '.join(free)}" if free else ""),
         {axis: Measured(float(offset[place]) * 1e-3, "m") for axis, place in seen.items()},
         _freed(),
     )
@@ -210,7 +210,9 @@ def _carried(error: SmallError, name: str) -> _Worded:
     place = ", ".join(f"{axis} {centre[number]:.2f}" for axis, number in seen.items())
     return (
         f"the link that {name} moves carries {_with_error(mass, spread)} kg that is not in the URDF",
-        f"at {place} m in the link's frame" if seen else "the motion does not show where",
+        f"at {place} m in the link's frame"
+        if seen
+        else "the motion does not show the place of this mass",
         {"mass": Measured(mass, "kg"), "mass_error": Measured(spread, "kg")},
         _freed(),
     )
@@ -252,13 +254,13 @@ def _coupled(robot: Robot) -> dict[str, dict[str, float]]:
 
 def _or(wrong: WrongFact) -> str:
     nearly = " and ".join(f"{each.coupling or 0.0:g}" for each in wrong.others)
-    return f" ({nearly} is nearly as good; the sign is uncertain)" if nearly else ""
+    return f" (a coupling of {nearly} fits nearly as well; the sign is uncertain)" if nearly else ""
 
 
 def _or_other(wrong: WrongFact) -> str:
     names = [name for each in wrong.others for name in each.joints]
     return (
-        f" (or those of {' or '.join(names)}: this motion does not separate the joints)"
+        f" (or the signs of {' or '.join(names)} are wrong: this motion does not separate the joints)"
         if names
         else ""
     )

@@ -84,7 +84,9 @@ def _unexamined(
     every = ", ".join(f"{name} {percent(share)}" for name, share in shares.items())
     return TYPES["unexamined_causes"].finding(
         f"{percent(shares[worst])} of the torque of {worst} is neither explained nor noise{more}",
-        Action("inspect", text=f"{worst} as a single joint, for which more causes are examined"),
+        Action(
+            "inspect", text=f"{worst} identified alone: more causes are examined for a single joint"
+        ),
         details="; ".join(
             filter(
                 None,

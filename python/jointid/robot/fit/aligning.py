@@ -116,9 +116,9 @@ def _lag_finding(lag: TorqueLag, names: Sequence[str]) -> Finding:
     more = f", and {len(sizes) - 1} more joints" if len(sizes) > 1 else ""
     every = ", ".join(f"{each} {text}" for each, text in sizes.items())
     return TYPES["torque_filtered"].finding(
-        f"the torque of {name} passed a low-pass filter of {size}{more}",
-        details=f"first-order time constants: {every}; these filters explain held-out motion better than a delay does, "
-        "and were undone before the identification",
+        f"the torque of {name} passed a low-pass filter with a time constant of {size}{more}",
+        details=f"first-order filters: {every}; filters explain held-out motion better than a delay; "
+        "the effect of the filters was removed before the identification",
         evidence={
             f"{each}.time_constant": Measured(float(value), "s")
             for each, value in zip(names, lag.values, strict=True)
@@ -144,8 +144,8 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
         size = f"{rounded(1e3 * abs(value), 1e3 * error)} ± {two_digits(1e3 * error)} ms"
         titles.append(_how_late(attempt.robot, of_joint, value, size, bool(away.any())))
         details.append(
-            f"{f'{names[joint]}: ' * (not alike)}{abs(value) / period:.1f} sample periods against the position, "
-            f"95 % interval {low:.2f} to {high:.2f} ms"
+            f"{f'{names[joint]}: ' * (not alike)}time shift of {abs(value) / period:.1f} sample periods against "
+            f"the position, 95 % interval {low:.2f} to {high:.2f} ms"
         )
         prefix = "" if alike else f"{names[joint]}."
         evidence |= {
@@ -167,11 +167,13 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
         text = "if the torque is a command that is held between samples"
         advice = (Action("call", {"torque_hold": "zoh"}, text=text, function="load_robot"),)
     if away.any() and attempt.robot.drive is not None:
-        details.append("this delay counts as one more unknown in the errors of all values")
+        details.append("the standard errors of all values include the uncertainty of this delay")
     elif away.any():
         details.append("the torque was shifted before the identification")
     elif found.chosen:
-        details.append("the position is late or coarse, the torque early, or the gear is elastic")
+        details.append(
+            "possible causes: a late or coarse position, an early torque, or an elastic gear"
+        )
         text = "the position's filter and resolution, and both clocks"
         advice = (Action("inspect", text=text),)
     else:
@@ -180,7 +182,9 @@ def _delay_finding(code: str, away: Array, found: Alignment) -> Finding:
         shift = {"shift": shift_option(whole, attempt.robot)}
         advice = (Action("call", shift, function="identify_robot"), *advice)
         if not alike:
-            text = "the delays; without a stated shift, each joint's delay is found and removed"
+            text = (
+                "the stated shift; without a stated shift, each joint's delay is found and removed"
+            )
             advice += (Action("inspect", text=text),)
     return TYPES[code].finding(
         titles[0] + more, *advice, details="; ".join([*titles[1:], *details]), evidence=evidence

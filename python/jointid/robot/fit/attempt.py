@@ -105,10 +105,10 @@ def attempted(
     balance = balance_of(robot, every(), duration, basis)
     if not balance.rows.torque.size:
         raise InputError(
-            "no joint moves by more than the noise of its velocity",
+            "no joint moves faster than the noise of its velocity",
             argument="recordings",
             value=runs[0].name,
-            remedy="if a joint does move, look for late time stamps or lost rows",
+            remedy="if a joint moves in the recording, check for late time stamps or lost rows",
         )
     fit, prior = fitted(robot, balance, request.inertia, request.models)
     if robot.drive is not None and gainless:

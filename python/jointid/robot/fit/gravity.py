@@ -75,8 +75,8 @@ def gravity_findings(given: Robot, attempt: Attempt) -> Iterator[Finding]:
     vector = ", ".join(f"{each:.3f}" if k in seen else "?" for k, each in enumerate(pull))
     also = f"; the motion does not show gravity along {' and '.join(hidden)}" if hidden else ""
     yield TYPES["gravity_found"].finding(
-        f"gravity is ({vector}) m/s² in the base's frame, to ± {np.degrees(_NORMAL * error):.2g}°",
-        details=f"the direction is identified; its size is taken from the facts{also}",
+        f"gravity is ({vector}) m/s² in the base's frame, direction ± {np.degrees(_NORMAL * error):.2g}°",
+        details=f"the direction is identified; the magnitude is taken from the facts{also}",
         evidence={"error": Measured(error, "rad")}
         | {_AXES[k]: Measured(float(pull[k]), "m/s²") for k in seen},
     )

@@ -58,9 +58,8 @@ def impossible_links(estimate: RobotEstimate) -> Iterator[Finding]:
         return
     distance = two_digits(estimate.impossible_by)
     yield TYPES["impossible_inertia"].finding(
-        f"the base parameters are not physically consistent, by {distance} standard errors",
-        details="no bodies can have such parameters; the distance is to the nearest possible ones; friction and the "
-        "torque of motion may still be right",
+        f"the base parameters are {distance} standard errors away from physically consistent values",
+        details="no bodies can have the identified parameters; friction and the torque of motion may still be right",
         severity="info",
         evidence={"distance": Measured(estimate.impossible_by)},
     )

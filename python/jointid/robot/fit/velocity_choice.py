@@ -121,9 +121,9 @@ def velocity_findings(choice: VelocityChoice, robot: Robot) -> Iterator[Finding]
         for name, joint in zip(names, joints, strict=True)
     ]
     yield TYPES["recorded_velocity"].finding(
-        f"the recorded velocity of {listed(names)} is used: it explains the torque better",
+        f"the recorded velocity of {listed(names)} is used: it explains the torque better than the derived velocity",
         Action("inspect", text="the time stamps and the positions' resolution"),
-        details="unexplained share of held-out torque with the recorded instead of the derived velocity: "
+        details="share of held-out torque that stays unexplained, with the recorded instead of the derived velocity: "
         + ", ".join(shares),
         evidence={
             f"{name}.{source}": Measured(float(values[joint]))

@@ -39,7 +39,7 @@ def read_facts(path: Path) -> dict[str, Any]:
     if "zero_offsets_deg" in found:
         if "zero_offsets" in found:
             raise InputError(
-                "zero_offsets states the same in radians; give only one of the two",
+                "zero_offsets states the same offsets in radians; give only one of these keys",
                 argument="zero_offsets_deg",
                 value=found["zero_offsets_deg"],
                 place=path.name,

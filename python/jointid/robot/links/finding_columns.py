@@ -45,7 +45,7 @@ def _lacking(joints: Sequence[str], recording: RobotRecording) -> InputError:
     fits = [each for each in joints if each in names or _numbered(each, names) is not None]
     if not fits:
         return InputError(
-            f"no joint of the recording is one of the robot's: {both}",
+            f"no joint of the recording has the name of a robot joint: {both}",
             place=recording.name,
             remedy=renamed,
         )

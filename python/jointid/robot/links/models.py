@@ -56,8 +56,8 @@ def _named(model: object, usual: str) -> str:
     stated = {name for name in chosen.stated() if name not in _FIELDS}
     if chosen.name not in (None, *MODELS, AUTO) or stated or chosen.load_friction == "drive":
         raise InputError(
-            f"a robot's friction model is one of {', '.join((*MODELS, AUTO))}, each also as "
-            "NAME:asymmetric, NAME:load_friction (of the links' torque), or both",
+            f"a robot's friction model is one of {', '.join((*MODELS, AUTO))}; options follow the name: "
+            "NAME:asymmetric, NAME:load_friction (friction from the links' torque), or both",
             argument="model",
             value=str(chosen),
         )

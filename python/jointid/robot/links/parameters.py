@@ -36,12 +36,12 @@ def parameter_facts(*models: str) -> dict[str, tuple[str, str, str]]:
                 found.setdefault(shape.name, _facts(shape, shape.meaning))
     more = f"half the difference of {VISCOUS.meaning}: positive direction minus negative direction"
     scale = "factor on all inertial parameters of the link that the joint moves"
-    gain = "torque of the drive per position error, from the weight of the links"
+    gain = "torque of the drive per position error, identified from the weight of the links"
     return {
         **found,
         DIFFERENCE: _facts(VISCOUS, more),
         **{
-            name: _facts(term, f"{term.meaning} of the motor, on its own speed")
+            name: _facts(term, f"{term.meaning} of the motor, from the motor's own speed")
             for name, term in MOTOR_TERMS.items()
         },
         "torque_offset": _facts(CONSTANT, "constant torque"),

@@ -53,7 +53,7 @@ class PositionDrive:
         for key in KEYS[:2]:
             if key not in drive:
                 raise InputError(
-                    'one number for all joints, one for each, or "free" is expected',
+                    'one number for all joints, one for each joint, or "free" is expected',
                     argument=f"drive.{key}",
                 )
         kp = _values(drive, "kp", count)
@@ -69,7 +69,7 @@ class PositionDrive:
                 'torque limits need a known kp, not "free"',
                 argument="drive.torque_limits",
                 value=drive["torque_limits"],
-                remedy="record motion that does not reach them",
+                remedy="record motion that does not reach the limits",
             )
         limits, delay = drive.get("torque_limits"), drive.get("delay", FREE)
         hold = drive.get("hold", "zoh")
@@ -169,7 +169,7 @@ def _values(drive: Mapping[str, Any], key: str, count: int) -> tuple[float | Non
     wrong = not isinstance(each, Sequence | np.ndarray) or len(each) != count
     if wrong or not all(v in (FREE, None) or (is_finite(v) and v >= 0.0) for v in each):
         raise InputError(
-            f'a number of at least 0, or "free", is expected: one for all joints, or one for each of the {count}',
+            f'a number of at least 0, or "free", is expected: one for all, or one for each of the {count} joints',
             argument=f"drive.{key}",
             value=drive[key],
         )
@@ -194,9 +194,9 @@ def facts_of_drive(names: Sequence[str]) -> str:
     """Return the line of a facts file that gives joints a position drive, with the values to fill in."""
     order = ", ".join(names)
     return (
-        "state the position loop in a facts file, above the tables: "
-        f"drive = {{kp = {[20.0] * len(names)}, kd = {[1.0] * len(names)}}}, with the robot's own numbers for {order} "
-        '[N·m/rad, N·m·s/rad], or one number for all; if the numbers are not known: drive = {kp = "free", kd = "free"}'
+        "state the position loop above the first table of the facts file: "
+        f"drive = {{kp = {[20.0] * len(names)}, kd = {[1.0] * len(names)}}}, with the robot's own gains for {order} "
+        '[N·m/rad, N·m·s/rad] or one gain for all joints; for unknown gains: drive = {kp = "free", kd = "free"}'
     )
 
 

@@ -55,7 +55,7 @@ def tree_of_urdf(path: Path, joints: Sequence[str] | None, gravity: Sequence[flo
         kept != expected
     ):  # the values of other lists would belong to other joints than the author intends
         raise InputError(
-            "the order of the URDF is expected, as in all other lists: " + ", ".join(expected),
+            "the joints are expected in the order of the URDF: " + ", ".join(expected),
             argument="joints",
             value=list(kept),
             remedy="use this order in gear_ratios and all other lists",
@@ -93,10 +93,10 @@ def _axis(model: Any, name: str) -> tuple[np.ndarray[Any, np.dtype[np.float64]],
     joint = model.joints[model.getJointId(name)]
     if joint.nv != 1:
         raise InputError(
-            "it has several degrees of freedom; only revolute and prismatic joints are read",
+            "this joint has several degrees of freedom; only revolute and prismatic joints are read",
             argument="joints",
             value=name,
-            remedy="leave it out of joints",
+            remedy="leave this joint out of joints",
         )
     state = joint.createData()
     neutral = np.array([1.0, 0.0]) if joint.nq == 2 else np.zeros(1)
@@ -131,7 +131,7 @@ def _xml(path: Path) -> str:
         raise InputError(reason, argument="path", value=path.name) from None
     if seen.first != "robot":
         raise InputError(
-            f"no URDF: it begins with <{seen.first}>, not with <robot>",
+            f"this is not a URDF: it begins with <{seen.first}>, not with <robot>",
             argument="path",
             value=path.name,
         )

@@ -39,29 +39,30 @@ class Robot:
     names : tuple of str
         Names of the joints; every list with one value per joint has this order.
     gear_ratios : tuple of float or None
-        Motor angle per angle of its joint, signed.
+        Motor angle per joint angle of each joint, with sign.
     couplings : ndarray, shape (n, n)
-        Matrix from joint speeds to motor speeds divided by gear ratios; the identity if each motor turns with its own
-        joint alone.
+        Matrix from joint speeds to motor speeds divided by gear ratios; the identity if each motor turns only with
+        its own joint.
     rotor_inertias : tuple of (float or None)
         Inertia of each motor with its gear, at the joint [kg·m² or kg]; None: identified.
     zero_offsets : tuple of float or None
-        The URDF's joint positions at the recording's 0 [rad or m]; None: 0, or multiples of 90 degrees if the URDF's
-        inertias fit only with these.
+        Joint positions in the URDF at the recording's position 0 [rad or m]. None: 0, or multiples of 90 degrees if
+        the URDF's inertias fit only with these multiples.
     side : str or None
-        "joint" or "motor": the side of positions and torques in recordings; None: as their headers say.
+        Side of the gear of recorded positions and torques: "joint" or "motor"; None: the side in the recording's
+        headers.
     name : str
         Name of the robot in the URDF.
     torque_scales : tuple of float or None
         Factors by which the recorded torques are multiplied; None: 1.
     directions : tuple of float or None
-        1, or -1 if positions and torques are recorded against the URDF's axis; None: 1.
+        1, or -1 if positive recorded positions and torques are negative about the URDF's axis; None: 1.
     torque_constants : tuple of float or None
-        Torque per recorded current of each motor [N·m/A], signed; None: not known.
+        Torque per recorded current of each motor [N·m/A], with sign; None: not known.
     models : tuple of str or None
-        Friction model of each joint, for calls that name none; None: "auto".
+        Friction model of each joint, for calls that name no model; None: "auto".
     drive : PositionDrive or None
-        The loop that turns wanted positions into torques; None: torques are recorded.
+        Position loop that computes torques from desired positions; None: torques are recorded.
     gravity_free : bool
         Whether the direction of gravity is identified.
     """
@@ -105,55 +106,59 @@ class Robot:
         Parameters
         ----------
         path : path-like
-            The URDF. Meshes are not read.
+            File of the URDF. Meshes are not read.
         joints : sequence of str, optional
-            The joints to identify, by the URDF's names and in its order; all lists below have this order. The others
-            stand at zero. Default: all that move.
+            Names of the joints to identify, in the URDF's order. All lists below have this order. The other joints
+            stay at position zero. Default: all movable joints.
         gear_ratios : sequence of float, optional
-            Motor angle per joint angle, one per joint, negative if they turn in opposite directions. Default: those of
-            the recording; a recording at the joints needs none.
+            Motor angle per joint angle, one value per joint; negative if motor and joint turn in opposite
+            directions. Default: gear ratios of the recording. A joint-side recording needs no gear ratios.
         couplings : array_like, shape (n, n), or mapping, optional
-            Matrix from joint speeds to motor speeds divided by gear ratios. Row i is motor i: ones at 5 and 6 in row 6
-            mean that motor 6 turns with both joints. ``{"joint_6": {"joint_5": 1.0}}`` means the same. Default: each
-            motor turns with its own joint alone.
+            Matrix from joint speeds to motor speeds divided by gear ratios. Row i belongs to motor i. Ones in
+            columns 5 and 6 of row 6 mean that motor 6 turns with both joints; ``{"joint_6": {"joint_5": 1.0}}`` has
+            the same meaning. Default: each motor turns only with its own joint.
         rotor_inertias : sequence of float or None, optional
-            Inertia of each motor with its gear at the joint, so times the square of the gear ratio [kg·m² or kg]; None
-            is identified. Default: all are identified.
+            Inertia of each motor with its gear at the joint: motor-side inertia times squared gear ratio [kg·m² or
+            kg]. None: identified. Default: all rotor inertias are identified.
         zero_offsets : sequence of float, optional
-            The URDF's joint positions at the recording's 0 [rad or m]; a controller often counts from another pose.
-            Default: 0, or multiples of 90 degrees if `identify` finds that the URDF's inertias fit only with these.
+            Joint positions in the URDF at the recording's position 0 [rad or m]. The controller's zero pose often
+            differs from the URDF's. Default: 0, or multiples of 90 degrees if the URDF's inertias fit only with
+            these multiples.
         side : {"joint", "motor"}, optional
-            Side of positions and torques in recordings. Default: the side in their headers.
+            Side of the gear of recorded positions and torques. Default: the side in the recording's headers.
         gravity : sequence of float or "free", optional
-            Gravity in the base's frame [m/s²]. "free" identifies its direction, for a robot on a stand or hanging.
-            Default (0, 0, -9.81): the base stands upright.
+            Gravity in the base's frame [m/s²]. "free" identifies the direction of gravity, e.g. for a tilted or
+            hanging robot. Default (0, 0, -9.81): the base stands upright.
         torque_constants : sequence of float, optional
-            Motor torque per recorded current [N·m/A], one per joint; negative if a positive current turns the joint
-            backwards. Gear ratios convert the torques to the joints; without them the constants are the joints'.
-            Default: not known; the recording then needs a torque.
+            Motor torque per recorded current [N·m/A], one value per joint; negative if a positive current turns the
+            joint backward. Gear ratios convert the torques to the joints. Without gear ratios, state joint-side
+            torque constants. Default: not known; the recording then needs a torque.
         torque_scales : sequence of float, optional
-            Factors on the recorded torques, one per joint (per motor if motors are recorded): the true torque constant
-            over the assumed one; -1 reverses a sign. Default: 1.
+            Factors by which recorded torques are multiplied, one per joint, or per motor for motor-side torques.
+            A factor is the true over the assumed torque constant; -1 reverses a sign. Default: 1.
         directions : sequence of float, optional
-            1 or -1, one per joint: -1 if positions and torques are recorded against the URDF's axis. Default: 1.
+            1 or -1, one per joint: -1 if positive recorded positions and torques are negative about the URDF's
+            axis. Default: 1.
         models : mapping, optional
-            Friction models by joint name, for calls of `identify` that name none. In a file of facts, ``model`` in a
-            table ``[joints.NAME]``. Default: "auto".
+            Friction models by joint name, for calls of `identify` that name no model. A file of facts states them
+            as ``model`` in a table ``[joints.NAME]``. Default: "auto".
         drive : mapping, optional
-            The loop that turns the wanted position into torque, if no torque is recorded; on the recording's side.
-            ``kp`` [N·m/rad] and ``kd`` [N·m·s/rad], one for all joints or one per joint. ``"free"``: ``kp`` is
-            identified from the weight of the links, ``kd`` is part of the viscous coefficient. ``torque_limits`` [N·m]
-            (default: none). ``hold``: "zoh" (default) if a wanted position holds until the next row, "linear" if it is
-            interpolated. ``delay`` from a row to its effect [s] (default: identified).
-            Default: torques are recorded.
+            Position loop that computes the torque from the desired position, if no torque is recorded. Its values
+            are on the recording's side of the gear. ``kp`` [N·m/rad] and ``kd`` [N·m·s/rad]: gains, one for all
+            joints or one per joint. With ``"free"``, ``kp`` is identified from the weight of the links, and ``kd``
+            is part of the viscous coefficient. ``torque_limits``: largest torques [N·m] (default: none). ``hold``:
+            "zoh" (default) if a desired position is held until the next row, "linear" if it is interpolated.
+            ``delay``: time from a row to the effect of its desired position [s] (default: identified). Default:
+            torques are recorded.
         facts : path-like, optional
-            A TOML file with any of these arguments except `path`, also ``zero_offsets_deg``. Arguments of the call
-            override it. ``"free"`` marks a rotor inertia to identify.
+            TOML file with any of these arguments except `path`, or with ``zero_offsets_deg``. Arguments of the call
+            override the file. ``"free"`` marks a rotor inertia to identify.
 
         Raises
         ------
         InputError
-            pinocchio is missing, the file is no URDF, a joint does not exist, or values do not fit the joints.
+            pinocchio is not installed, the file is not a URDF, a joint does not exist, or values do not fit the
+            joints.
 
         Examples
         --------
@@ -230,7 +235,7 @@ class Robot:
 
     @property
     def coupled(self) -> NDArray[np.bool_]:
-        """Whether each motor turns with several joints, or not with its own."""
+        """For each motor: True if it also turns with joints other than its own joint."""
         return np.array(
             [np.any(np.delete(row, k) != 0.0) for k, row in enumerate(self.couplings)], dtype=bool
         )
@@ -238,9 +243,9 @@ class Robot:
     def columns_of(self, recording: RobotRecording) -> list[int]:
         """Return the recording's column of each joint.
 
-        Joints are matched by name. If no name fits and the number of joints is the same, they are taken in the order of
-        `joints` when loading. Without that order, they are matched by number if the recording numbers them, otherwise
-        in order.
+        Joints are matched by name. If no name fits and the number of joints is the same, the order of `joints` in
+        the call of `load` applies. Without `joints`, joints are matched by the numbers in the recording's names, or
+        in order without numbers.
 
         Raises
         ------
@@ -252,7 +257,9 @@ class Robot:
 
 def _models(models: Mapping[str, Model | str], names: Sequence[str]) -> tuple[str, ...]:
     if not isinstance(models, Mapping):
-        raise InputError("models by joints' names are expected", argument="models", value=models)
+        raise InputError(
+            "a mapping from joint names to models is expected", argument="models", value=models
+        )
     try:
         return tuple(friction_models(dict(models), names))
     except InputError as error:

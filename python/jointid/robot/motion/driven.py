@@ -46,7 +46,7 @@ class Driven:
                 remedy=Action(
                     "call",
                     {"columns": {"reference": ...}},
-                    "{joint} in the header stands for the joint",
+                    "write {joint} in the header in place of the joint's name",
                     "load",
                 ),
             )

@@ -27,7 +27,7 @@ def recordings_of(recordings: object) -> list[RobotRecording]:
             "a RobotRecording, or several, is expected",
             argument="recordings",
             value=recordings,
-            remedy='load(path, joints="all") reads one',
+            remedy='load(path, joints="all") reads a RobotRecording',
         )
     for run in given:
         require_kind("recordings", run, RobotRecording)
@@ -54,7 +54,7 @@ def least_speeds(
         given = np.full(robot.n, float(given)) if given.ndim == 0 else given
     if given.shape != (robot.n,) or not np.all((given >= 0.0) & np.isfinite(given)):
         raise InputError(
-            f"0 or more is expected, one for all or one for each of the {robot.n} joints",
+            f"speeds of 0 or more are expected, one for all joints or one for each of the {robot.n} joints",
             argument="min_speed",
             value=min_speed,
         )
@@ -73,8 +73,8 @@ def duration_of(windows: float | None, motions: Sequence[Motion], total: float) 
         duration = total / windows if number and isinstance(windows, int) else windows
         if not number or not shortest <= duration <= total:
             raise InputError(
-                f"a duration of {shortest:.3g} to {total:.4g} seconds, or a whole number of windows, at most {most}, "
-                "is expected",
+                f"a duration from {shortest:.3g} to {total:.4g} seconds is expected, or the number of windows (at "
+                f"most {most})",
                 argument="windows",
                 value=windows,
             )

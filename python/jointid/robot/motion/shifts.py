@@ -49,21 +49,21 @@ def torque_shift(shift: object, robot: Robot) -> Array:
             continue
         if moved == COMMAND:
             raise InputError(
-                "no torque was recorded; the delay of this robot is that of the wanted positions",
+                "the recording has no torque; only the delay of the wanted positions can be stated",
                 argument="shift",
                 value=signal,
                 remedy=f"pass shift={{'{COMMAND}': seconds}}",
             )
         if signal not in SHIFTED:
             raise InputError(
-                "there is no such signal; only the torque of a robot can have a delay removed",
+                "there is no such signal; only the delay of a robot's torque can be removed",
                 argument="shift",
                 value=signal,
                 remedy="pass shift={'torque': seconds}",
             )
         raise InputError(
-            "only the torque of a robot can have a delay removed; a recorded velocity is moved to the positions' "
-            "clock automatically",
+            "only the delay of a robot's torque can be removed; the delay of a recorded velocity is removed "
+            "automatically",
             argument="shift",
             value=signal,
             remedy="leave it out",
@@ -93,7 +93,7 @@ def _of_joints(shift: Mapping[str, Any], key: str, robot: Robot) -> Array:
     if isinstance(given, list | tuple | np.ndarray):
         if len(given) != robot.n:
             raise InputError(
-                f"one for all or one for each of the {robot.n} joints is expected",
+                f"one number for all joints, or one for each of the {robot.n} joints, is expected",
                 argument=f"shift.{key}",
                 value=given,
             )

@@ -46,9 +46,9 @@ def bootstrapped(
     seed = whole_number("seed", seed, 0, 2**64 - 1)
     if source is None:
         raise InputError(
-            "this estimate was read from a file, which does not hold the recordings",
+            "this estimate was read from a file, and the file does not hold the recordings",
             argument="bootstrap",
-            remedy="identify again, and ask the new estimate",
+            remedy="identify again, and call bootstrap on the new estimate",
         )
     below, above = source.lower - source.values, source.upper - source.values
     moved = draws(source.cells, below, above, count, seed)

@@ -103,7 +103,7 @@ def _winner(d: Mapping[str, Any]) -> int:
 def _contradictions(d: Mapping[str, Any], joints: list[str]) -> Iterator[tuple[str, str]]:
     """Yield the places of fields that are valid alone but contradict each other."""
     if _winner(d) < 0:
-        yield "winner", "this is none of the rows"
+        yield "winner", "no row has this inertia and model"
     named = f"the robot has {', '.join(joints)}, in this order"
     if list(d["models"]) != joints:
         yield "models", named

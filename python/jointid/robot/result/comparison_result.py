@@ -29,18 +29,18 @@ class RobotComparison(KeptResult):
     Attributes
     ----------
     rows : tuple of ComparedRobotModel
-        The candidates, in the order of the call.
+        One row for each candidate, in the order of the call.
     winner : ComparedRobotModel
         The chosen candidate.
     models : mapping of str to str
-        The model of each joint, chosen by the same rule with the chosen inertia.
+        Model of each joint, chosen by the same rule with the chosen inertia.
     reason : str
         Reason of the choice, in a sentence.
     estimate : RobotEstimate
         Estimate from all recordings, with the chosen inertia and each joint's model.
     settings : mapping
-        Number of folds, the held-out part ("block", "recording" or "recordings"), duration of the windows, and
-        "left_out": candidates without a fit, with the reason for each.
+        Number of folds, held-out part ("block", "recording" or "recordings") and duration of the windows.
+        "left_out" contains the candidates without a fit, with the reason for each candidate.
     """
 
     rows: tuple[ComparedRobotModel, ...]
@@ -89,7 +89,8 @@ class RobotComparison(KeptResult):
         Parameters
         ----------
         verbose : bool
-            Whether to return everything: a line for each candidate, and each joint's residual. Default False.
+            Whether to return the complete report: a line for each candidate, and each joint's residual. Default
+            False.
         """
         if not verbose:
             return answer_of_comparison(self)
@@ -101,7 +102,7 @@ class RobotComparison(KeptResult):
         return printable("\n".join([*lines, f"chosen: {self.winner.name}", self.reason]))
 
     def to_dict(self) -> dict[str, Any]:
-        """Return everything in JSON's types; the estimate has the format of `RobotEstimate.to_dict`."""
+        """Return the whole comparison in JSON's types; the estimate has the format of `RobotEstimate.to_dict`."""
         from jointid.robot.result.comparison_reading import KIND, SCHEMA
 
         rows = [asdict(row) for row in self.rows]
@@ -124,12 +125,12 @@ class RobotComparison(KeptResult):
     document = to_dict
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the comparison from a JSON text; `bootstrap` of its estimate needs the recordings.
+        """Return the comparison from a JSON text; `bootstrap` of its estimate raises an error.
 
         Parameters
         ----------
@@ -152,7 +153,7 @@ class RobotComparison(KeptResult):
         Returns
         -------
         DataFrame
-            Indexed by inertia and model; scores relative to the measured torque, as in `rows`.
+            Data frame indexed by inertia and model. Scores are relative to the measured torque, as in `rows`.
 
         Raises
         ------
@@ -165,7 +166,7 @@ class RobotComparison(KeptResult):
         return data_frame(rows, index=["inertia", "model"])
 
     def cells(self) -> list[list[str]]:
-        """Return the table of the candidates, without its head."""
+        """Return the table of the candidates, without the header row."""
         return [
             [
                 row.inertia,
@@ -179,7 +180,7 @@ class RobotComparison(KeptResult):
         ]
 
     def joint_cells(self) -> list[list[str]]:
-        """Return each joint's held-out residual, one row for each candidate, and its model."""
+        """Return the table of each joint's held-out residual, one row per candidate; last row: chosen models."""
         found = [
             [row.name, *(f"{100.0 * row.mean_of(joint):.2f} %" for joint in row.joints)]
             for row in self.rows
@@ -187,15 +188,16 @@ class RobotComparison(KeptResult):
         return [*found, ["chosen", *self.models.values()]]
 
     def setting(self) -> str:
-        """Return the setting of the comparison, in a sentence."""
+        """Return the setting of the comparison in a sentence: folds, held-out parts, windows and residual."""
         unit = {
             "block": "block of the recording",
             "recording": "recording",
             "recordings": "group of recordings",
         }[self.settings["held_out"]]
         return (
-            f"{self.settings['folds']} folds, one {unit} held out in each; residual of the torque over windows of "
-            f"{1e3 * self.settings['window_duration']:.4g} ms, relative to the measured torque, mean of the joints"
+            f"{self.settings['folds']} folds, one {unit} held out in each; torque residual over windows of "
+            f"{1e3 * self.settings['window_duration']:.4g} ms, relative to the measured torque, averaged over the "
+            "joints"
         )
 
     @property

@@ -63,9 +63,7 @@ class CrossCheck:
         compared = sum(each.agrees is not None for each in self.parameters.values())
         apart = [name for name, each in self.parameters.items() if each.agrees is False]
         if not self.agrees:
-            what = f"disagrees: {', '.join(apart)}" if apart else "explains much more"
+            what = f"disagrees: {', '.join(apart)}" if apart else "explains much more of the torque"
             also = "; the findings explain why" if self.explained else ""
-            return f"a plain filtered least squares {what}{also}"
-        return (
-            f"a plain filtered least squares agrees ({compared} of {len(self.parameters)} values)"
-        )
+            return f"a simple filtered least-squares fit {what}{also}"
+        return f"a simple filtered least-squares fit agrees ({compared} of {len(self.parameters)} values compared)"

@@ -16,127 +16,131 @@ TYPES = {
         FindingType(
             code="scaled_torques",
             severity="blocking",
-            meaning="all torques differ from the weight of the URDF's links by about the same factor, above 1.6. "
-            "They are probably currents or motor-side torques. A factor below 2.5 is reported only if no "
-            "change of a single link explains the torques nearly as well",
+            meaning="all torques differ from the gravity torques of the URDF's links by about the same factor. This "
+            "factor is above 1.6. The torques are probably currents or motor-side torques. A factor below 2.5 is "
+            "reported only if no change of a single link explains the torques nearly as well",
             advice="state the unit, the gear ratios, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="different_factors",
             severity="blocking",
-            meaning="the torques of several joints differ from the weight of the URDF's links, by a different factor "
-            "for each joint. Probably one gear ratio, torque constant or gain was used for all joints. Reported only "
-            "if no change of a single link explains the torques nearly as well",
+            meaning="the torques of several joints differ from the gravity torques of the URDF's links, by a "
+            "different factor for each joint. Probably one gear ratio, torque constant or gain was used for all "
+            "joints. The finding appears only if no change of a single link explains the torques nearly as well",
             advice="state `gear_ratios`, `torque_scales`, or a drive's `kp` and `kd`",
         ),
         FindingType(
             code="joint_order",
             severity="blocking",
-            meaning="three or more joints are in a different order in the log than in the robot. This concerns "
-            "all columns, only the torques, or a drive's wanted positions",
+            meaning="three or more joints are in a different order in the log than in the robot. The order is wrong "
+            "in all columns, only in the torques, or only in a drive's wanted positions",
             advice=_COLUMNS,
         ),
         FindingType(
             code="reversed_torques",
             severity="blocking",
-            meaning="all torques have the opposite sign to the weight of the URDF's links",
+            meaning="all torques have the opposite sign to the gravity torques of the URDF's links",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="reversed_positions",
             severity="blocking",
-            meaning="all positions, with or without the torques, have the opposite sign to the URDF's axes. An "
-            "arm that is its own mirror image does not show this error",
+            meaning="all positions have the opposite sign to the URDF's axes; the sign of the torques may also be "
+            "wrong. The log of a mirror-symmetric arm does not show this error",
             advice="state `directions`",
         ),
         FindingType(
             code="unsigned_torque",
             severity="blocking",
-            meaning="a torque is never negative although the joint moves both ways. The torque fits the URDF only "
-            "as a magnitude",
-            advice="log the driver's signed value",
+            meaning="the torque of a joint is never negative although the joint moves both ways. Only the magnitude "
+            "of this torque fits the URDF",
+            advice="log the signed torque of the driver",
         ),
         FindingType(
             code="implausible_unit",
-            meaning="a position or velocity is probably in degrees: the velocity and the position's derivative "
-            "differ by a factor of 57. Blocking if most joints move over twice the URDF's range, or if the measured "
-            "torques fit the links only in degrees",
+            meaning="a position or velocity is probably in degrees: the velocity and the position's derivative differ "
+            "by a factor of 57. Blocking if most joints move more than twice the URDF's range, or if the torques fit "
+            "the links only with positions in degrees",
             advice="state the unit of the signal",
         ),
         FindingType(
             code="cross_check",
             severity="blocking",
-            meaning="an independent second fit gives other values, or explains much more of the torque",
+            meaning="an independent second fit gives other values than the main fit, or has a much smaller residual",
             advice="check the time stamps and the logger, or leave slow motion out",
         ),
         FindingType(
             code="swapped_joints",
             severity="blocking",
-            meaning="the columns of two joints are probably exchanged. Checked if a joint's residual is "
-            "above 5 %, or if its friction would be negative",
+            meaning="the columns of two joints are probably exchanged. Checked if the residual of a joint is above 5 "
+            "% of its torque, or if its friction would be negative",
             advice=_COLUMNS,
         ),
         FindingType(
             code="swapped_torques",
             severity="blocking",
-            meaning="the torque columns of two joints are probably exchanged. Checked like `swapped_joints`",
+            meaning="the torque columns of two joints are probably exchanged. Checked under the conditions of "
+            "`swapped_joints`",
             advice=_COLUMNS,
         ),
         FindingType(
             code="wrong_sign",
             severity="blocking",
-            meaning="all signals of a joint have the wrong sign. Checked like `swapped_joints`. If the arm moves "
-            "in one plane, its mirror image fits as well; both possible joints are then named",
+            meaning="all signals of a joint have the wrong sign. Checked under the conditions of `swapped_joints`. If "
+            "the arm moves in one plane, its mirror image fits as well. The finding then names both joints that may "
+            "be wrong",
             advice="state `directions`",
         ),
         FindingType(
             code="wrong_torque_sign",
             severity="blocking",
-            meaning="the torque of a joint has the wrong sign. Checked like `swapped_joints`",
+            meaning="the torque of a joint has the wrong sign. Checked under the conditions of `swapped_joints`",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="wrong_motion_sign",
             severity="blocking",
-            meaning="the position of a joint has the wrong sign; its torque has the right sign. Checked like "
-            "`swapped_joints`",
+            meaning="the position of a joint has the wrong sign; its torque has the right sign. Checked under the "
+            "conditions of `swapped_joints`",
             advice="state `directions` and `torque_scales`",
         ),
         FindingType(
             code="wrong_coupling",
-            meaning="a motor coupling is missing or has a wrong factor. Checked like `swapped_joints`, with free "
-            "inertias. Factors 0 and ±1 of neighbouring joints are tried, and exchanged rows and columns. A factor "
-            "that makes friction negative is named only if the fit is much better with this factor",
+            meaning="a motor coupling is missing or has a wrong factor. Checked under the conditions of "
+            "`swapped_joints`, with free inertias. The program tries factors 0 and ±1 of neighbouring joints, and "
+            "exchanged rows and columns. A factor that makes friction negative is reported only if the fit becomes "
+            "much better with it",
             advice="state `couplings`",
         ),
         FindingType(
             code="tilted_base",
-            meaning="the direction of gravity differs from the facts. The finding states the tilt and its error",
+            meaning="the direction of gravity differs from the stated direction. The finding states the tilt and its "
+            "error",
             advice="state `gravity`",
         ),
         FindingType(
             code="wrong_zero",
-            meaning="the zero of a joint is off by some degrees",
+            meaning="the zero positions of a joint in log and URDF differ by some degrees",
             advice="state `zero_offsets`",
         ),
         FindingType(
             code="wrong_torque_scale",
-            meaning="the torque of one joint is too high or too low, compared with the weight of the links and "
-            'the other joints. A wrong torque constant causes this. With `inertia="free"`, only joints '
-            "that carry each other show this error, so the first joint is not checked. A small factor on all "
-            "torques looks like heavier links",
+            meaning="the torque of one joint is too high or too low, compared with the weight of the links and the "
+            'other joints. The usual cause is a wrong torque constant. With `inertia="free"`, the first joint does '
+            "not show this error, because its inertia affects no other joint. If all torques are too high by the same "
+            "small factor, the links seem heavier",
             advice="state `torque_scales`",
         ),
         FindingType(
             code="payload",
             meaning='the last link carries a body that is not in the URDF. Not checked with `inertia="free"`',
-            advice='add it to the URDF, or identify with `inertia="free"`',
+            advice='add the body to the URDF, or identify with `inertia="free"`',
         ),
         FindingType(
             code="wrong_centre",
-            meaning="the centre of mass of a link is not where the URDF has it. Not checked with "
-            '`inertia="free"`. A shift along the next joint\'s axis may belong to either of two links: both '
-            "are named",
+            meaning="the centre of mass of a link differs from its position in the URDF. Not checked with "
+            '`inertia="free"`. A shift along the next joint\'s axis may belong to either of two links. The finding '
+            "then names both links",
             advice='correct the URDF, or identify with `inertia="free"`',
         ),
         FindingType(
@@ -146,49 +150,50 @@ TYPES = {
         ),
         FindingType(
             code="more_wrong_facts",
-            meaning="joints still fit badly after the named facts are corrected: another fact is wrong, too",
-            advice="correct the named facts, then identify again",
+            meaning="some joints still fit poorly after all reported facts are corrected: another fact is wrong, too",
+            advice="correct the reported facts, then identify again",
         ),
         FindingType(
             code="several_wrong_facts",
             severity="info",
-            meaning="several facts are wrong. Up to three wrong facts are found, one after the other; the printed "
-            "call corrects all of them",
+            meaning="several facts are wrong. The program finds up to three wrong facts, one after the other. The "
+            "printed call corrects all of them",
             advice="state all corrected facts",
         ),
         FindingType(
             code="consequences",
             severity="info",
-            meaning="warnings that disappear when the named facts are corrected; these warnings are not listed",
+            meaning="some warnings are not listed, because they disappear when the reported facts are corrected",
             advice="nothing",
         ),
         FindingType(
             code="turned_zero",
-            meaning="the log and the URDF count joints from different zeros, a multiple of 90 degrees apart. The "
-            "URDF's inertias fit at least twice as well with these offsets, so they are applied. Gravity "
-            "does not show the zero of a joint with a vertical axis",
+            meaning="the zero positions of a joint in log and URDF differ by a multiple of 90 degrees. With this "
+            "offset, the residual of the fit with the URDF's inertias is at most half as large, so the program "
+            "applies the offset. Gravity does not show the zero of a joint with a vertical axis",
             advice="state `zero_offsets`",
         ),
         FindingType(
             code="signal_lag",
             meaning="the torque is late or early relative to the position, and was not shifted. With a position "
-            "drive, this is the torque that the wanted positions cause",
+            "drive, this torque is computed from the wanted positions",
             advice="state `shift`, or check filters and clocks",
         ),
         FindingType(
             code="delay_removed",
             severity="info",
             meaning="the torque was late or early relative to the position, and was shifted before the "
-            "identification. With a position drive, the delay is from a row to the effect of its wanted position",
+            "identification. With a position drive, the delay is the time from a row to the effect of its wanted "
+            "position",
             advice="nothing, or state `shift`",
         ),
         FindingType(
             code="recorded_velocity",
             severity="info",
-            meaning="the recorded velocity of a joint is used, not the velocity derived from its positions. The "
-            "recorded velocity predicts held-out torque better, by three standard errors and a tenth of the squared "
-            "residual. Warning if noise hides all motion in the derived velocity, so that the two cannot "
-            "be compared",
+            meaning="the fit uses the recorded velocity of a joint, not the velocity derived from its positions. With "
+            "the recorded velocity, the squared residual of held-out torque is smaller by more than 10 % and three "
+            "standard errors. Warning if noise hides all motion in the derived velocity, because the two velocities "
+            "are then not compared",
             advice="nothing, or check the time stamps and the positions' resolution",
         ),
         FindingType(
@@ -206,19 +211,20 @@ TYPES = {
         ),
         FindingType(
             code="unexamined_causes",
-            meaning="the residual of a joint is not noise: neighbouring windows are alike, and no known cause "
-            "explains most of it. The finding lists the causes that are not examined for a robot. The "
-            'verdict becomes "usable with care". Info if the named facts explain it',
-            advice="identify the joint alone, which examines these causes",
+            meaning="the residual of a joint is not noise: neighbouring windows have similar residuals, and no known "
+            "cause explains most of the residual. The finding lists the causes that are not examined for a robot. The "
+            'verdict becomes "usable with care". Info if reported wrong facts explain the residual',
+            advice="identify the joint alone, to examine these causes",
         ),
         FindingType(
             code="asymmetric_friction",
-            meaning="viscous friction differs between the directions. Checked only if nothing else is wrong",
+            meaning="viscous friction differs between the two directions of motion. Checked only if no other error is "
+            "found",
             advice='identify with `model="auto:asymmetric"`',
         ),
         FindingType(
             code="poor_fit",
-            meaning="the model leaves more than 15 % of a joint's torque unexplained",
+            meaning="the residual of a joint is larger than 15 % of its torque",
             advice='identify with `inertia="free"`; check units, signs and gear ratio of the joint',
         ),
         FindingType(
@@ -228,56 +234,59 @@ TYPES = {
         ),
         FindingType(
             code="at_bound",
-            meaning="friction would be negative and is held at 0. Info if the friction held at 0 is at most a tenth of "
-            "the joint's friction",
+            meaning="a friction parameter would be negative, so the fit holds it at 0. Info if the true parameter "
+            "causes at most a tenth of the joint's friction torque",
             advice="check the model and the stated facts",
         ),
         FindingType(
             code="standing",
-            meaning="joints stand still, stick or are too slow; these parts of the log are left out. Info up to 35 % "
-            "of the time",
+            meaning="joints stand still, stick or move too slowly for the fit; these parts of the log are left out. "
+            "Info if these parts are at most 35 % of the time",
             advice="record more motion",
         ),
         FindingType(
             code="locked_joint_moves",
-            meaning="a joint that `joints` leaves out moves in the recording",
-            advice="add it to `joints`",
+            meaning="a joint moves in the recording, but `joints` does not list it",
+            advice="add the joint to `joints`",
         ),
         FindingType(
             code="impossible_inertia",
-            meaning='no physical body can have these inertial parameters. Info with `inertia="free"`; the finding '
-            "states the distance in standard errors",
+            meaning='no physical body can have the identified inertial parameters. Info with `inertia="free"`. The '
+            "finding then states the distance of the identified parameters from physically possible ones, in standard "
+            "errors",
             advice='identify with `inertia="free"`',
         ),
         FindingType(
             code="scaled_inertia",
             severity="info",
-            meaning="a link's factor (`inertia_scale`) differs from 1",
+            meaning="the factor on a link's inertia (`inertia_scale`) differs from 1",
             advice="nothing, or correct the URDF",
         ),
         FindingType(
             code="merged_inertia",
             severity="info",
-            meaning="the motion does not separate a rotor's inertia or a link's factor from other inertias",
+            meaning="the motion does not separate a rotor's inertia, or the factor on a link's inertia, from other "
+            "inertias",
             advice="nothing, or state `rotor_inertias`",
         ),
         FindingType(
             code="joints_in_order",
             severity="info",
-            meaning="the recording does not name the URDF's joints, so columns are assigned to joints in order",
+            meaning="the recording does not name the URDF's joints, so its columns are assigned to these joints in "
+            "order",
             advice="check the order",
         ),
         FindingType(
             code="joints_left_out",
             severity="info",
-            meaning="joints of the log, such as a gripper's, are not read, because their clock differs from that of "
+            meaning="some joints of the log, such as a gripper, are not read. Their clock differs from the clock of "
             "the joints with torques",
             advice="nothing, or name the joints with `joints`",
         ),
         FindingType(
             code="no_gravity",
             severity="info",
-            meaning="no gravity acts on the robot, as the facts say",
+            meaning="the facts state that no gravity acts on the robot",
             advice="nothing, or state `gravity`",
         ),
     )

@@ -26,7 +26,7 @@ _VAGUE = 0.25  # standard error over value: above it, a value is uncertain
 _MATTERS, _SURE = 0.05, 3.0
 _POOR = 0.15  # of the torque
 _DOUBTFUL = 0.05  # of the torque: above it, the facts should be checked
-_LEFT_OUT = "this motion says nothing about friction and is left out"
+_LEFT_OUT = "this part of the motion does not show friction and is left out"
 _RANK = {"blocking": 0, "warning": 1, "info": 2}
 
 
@@ -103,7 +103,7 @@ def _of_joint(
         yield TYPES["undetermined"].finding(
             f"{what} is uncertain: {rounded(p.value, p.stderr)} ± {two_digits(p.stderr)} {p.unit}"
             if known
-            else f"{what} is not determined: any value fits",
+            else f"{what} is not determined: any value fits the recording",
             Action("record", text=f"more and faster motion of {joint.name}"),
             parameters=(f"{joint.name}.{name}",),
             evidence={"stderr": Measured(p.stderr, p.unit)} if known else {},
@@ -121,11 +121,11 @@ def _of_joint(
             names = listed([name.replace("_", " ") for name in alike])
             what = f"{names} of {joint.name} {'is' if len(alike) == 1 else 'are'}"
             yield TYPES["at_bound"].finding(
-                f"{what} held at 0, the bound: at most {largest} of the joint's friction"
+                f"{what} held at the bound 0; the true value is at most {largest} of the joint's friction"
                 if small
                 else f"{what} held at 0 instead of a negative value",
                 *(() if small else (_looked_at(joint),)),
-                details="" if small else "the model or a given fact is wrong",
+                details="" if small else "the model or a stated fact is wrong",
                 severity="info" if small else "warning",
                 parameters=tuple(f"{joint.name}.{name}" for name in alike),
                 evidence={f"{joint.name}.{name}.share": Measured(held_by[name]) for name in alike},
@@ -156,7 +156,7 @@ def _of_inertia(estimate: RobotEstimateRecord, columns: InertiaColumns) -> Itera
         shown = listed([names[each] for each in columns.dropped])
         yield TYPES["merged_inertia"].finding(
             f"the rotor inertia of {shown} is part of the links' inertias",
-            details="no motion separates the two; the base parameters contain the rotor inertia",
+            details="no motion separates these inertias; the base parameters contain the rotor inertia",
         )
     if columns.fixed:
         shown = listed([names[each] for each in columns.fixed])

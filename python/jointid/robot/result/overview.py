@@ -27,8 +27,9 @@ def overview_of(estimate: RobotEstimateRecord) -> Overview:
 def made_by(estimate: RobotEstimateRecord) -> str:
     """Return the method, the version and the recordings."""
     return (
-        "All joints together, by integrals of the torque balance over windows, without accelerations; value ± "
-        f"standard error. jointid {estimate.settings.get('version', '')}; {'; '.join(recordings_of(estimate))}"
+        "All joints are identified together, from integrals of the torque balance over windows, without "
+        f"accelerations; value ± standard error. jointid {estimate.settings.get('version', '')}; "
+        f"{'; '.join(recordings_of(estimate))}"
     )
 
 

@@ -50,9 +50,9 @@ def robot_estimate_of(document: Any, cls: type[Saved]) -> Saved:
         )
     schema = int(Number(low=1, whole=True).read(document.get("schema"), "schema"))
     if schema != SCHEMA:
-        old = "it was saved without the robot's links, which are needed to use it"
+        old = "the file lacks the robot's links, and the estimate cannot be used without them"
         raise InputError(
-            old if schema < SCHEMA else f"this jointid reads schemas up to {SCHEMA}",
+            old if schema < SCHEMA else f"this version of jointid reads schemas up to {SCHEMA}",
             value=schema,
             place="schema",
             remedy="identify again" if schema < SCHEMA else "update jointid",
@@ -183,10 +183,10 @@ def _contradictions(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
         yield "free", "a name is there twice"
     for i, name in enumerate(free):
         if name not in every:
-            yield f"free[{i}]", "this is none of the parameters"
+            yield f"free[{i}]", "no parameter has this name"
     if any(len(row) != len(free) for row in (d["covariance"], *d["covariance"])):
         count = len(free)
-        yield "covariance", f"{count} rows of {count} are expected, as many as free parameters"
+        yield "covariance", f"{count} rows of {count} numbers are expected, one per free parameter"
     yield from empty_calls(d["findings"])
 
 
@@ -195,9 +195,9 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
     held = d["parameters"]
     for key, p in held.items():
         if key not in PARAMETERS:
-            yield f"{place}.parameters.{key}", f"known are {', '.join(PARAMETERS)}"
+            yield f"{place}.parameters.{key}", f"choose one of {', '.join(PARAMETERS)}"
         if p["name"] != key:
-            yield f"{place}.parameters.{key}.name", "this is not the name of the entry"
+            yield f"{place}.parameters.{key}.name", "the key of this entry is expected"
     terms = terms_of(d["model"])
     offset = () if POSITION_GAIN in held else ("torque_offset",)
     for key in (*(term.name for term in terms if not term.shapes), *offset):
@@ -218,7 +218,7 @@ def _of_joint(name: str, d: Mapping[str, Any], recordings: int) -> Iterator[tupl
         if max(windows["recording"]) >= recordings:
             yield (
                 f"{place}.windows.recording",
-                "settings.recordings contains fewer recordings",
+                "an index into settings.recordings is expected",
             )
 
 
@@ -230,7 +230,7 @@ def _of_robot(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
     for k, each in enumerate(links):
         place = f"robot.joints[{k}]"
         if each["parent"] >= k:
-            yield f"{place}.parent", "a link before this one, or -1, is expected"
+            yield f"{place}.parent", "the index of an earlier link, or -1, is expected"
         rotation = np.array(each["rotation"])
         if np.abs(rotation @ rotation.T - np.eye(3)).max() > _TURNED:
             yield f"{place}.rotation", "a rotation is expected"
@@ -238,7 +238,7 @@ def _of_robot(d: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
             yield f"{place}.axis", "a vector of length 1 is expected"
     couplings = d["couplings"]
     if any(len(row) != count for row in (couplings, *couplings)):
-        yield "robot.couplings", f"{count} rows of {count} are expected"
+        yield "robot.couplings", f"{count} rows of {count} numbers are expected"
     elif not np.linalg.cond(np.array(couplings)) <= _SINGULAR:
         yield (
             "robot.couplings",

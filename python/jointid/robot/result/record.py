@@ -73,7 +73,7 @@ class RobotEstimateRecord:
 
     @property
     def parameters(self) -> dict[str, ParameterEstimate]:
-        """All parameters. Names are those of `free`, "joint.name"; for base parameters their combination."""
+        """All parameters by name: "joint.name" as in `free`, or the combination of a base parameter."""
         of_joints = {
             f"{joint.name}.{name}": p
             for joint in self.joints.values()
@@ -83,5 +83,5 @@ class RobotEstimateRecord:
 
     @property
     def warnings(self) -> tuple[Finding, ...]:
-        """Findings that may bias values or make them unusable."""
+        """Findings of severity "warning" or "blocking"."""
         return tuple(found for found in self.findings if found.severity != "info")

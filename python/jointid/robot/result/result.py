@@ -30,24 +30,24 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     Attributes
     ----------
     joints : mapping of str to RobotJoint
-        Joints, by their names in the URDF.
+        Results of the joints, by the joints' names in the URDF.
     inertia : str
         "urdf", "scaled" or "free".
     base_parameters : mapping of str to ParameterEstimate
-        The combinations of inertial parameters that the motion shows, with ``inertia="free"``.
+        Combinations of inertial parameters that the motion determines, with ``inertia="free"``.
     inertial : ndarray, shape (n, 10)
-        Inertial parameters of all links: m, m·c, I about the joint's frame. With ``inertia="free"`` one of many sets
-        with these base parameters: physically consistent and close to the URDF's, if the errors allow it. Do not
-        interpret its single values.
+        Inertial parameters of all links: m, m·c, I about the joint's frame. With ``inertia="free"``, many sets have
+        these base parameters. This set is physically consistent and close to the URDF's, if the errors allow this.
+        Do not interpret its single values.
     consistent : bool or None
-        Whether bodies can have these inertial parameters; None: the URDF's are used unchanged.
+        Whether the inertial parameters are physically consistent; None: the URDF's parameters are used unchanged.
     impossible_by : float
-        With ``inertia="free"``, the distance from the identified base parameters to the nearest that bodies can
-        have, in standard errors (Mahalanobis distance). Default 0: bodies can have them.
+        Distance from the identified base parameters to the nearest physically consistent parameters, in standard
+        errors (Mahalanobis distance), with ``inertia="free"``. Default 0: consistent.
     relative_residual : float
-        Norm of all joints' residuals over the norm of their measured integrals.
+        Norm of all joints' residuals divided by the norm of the measured integrals.
     free : tuple of str
-        The free parameters, "joint.name", in the order of `covariance`.
+        Names of the free parameters, "joint.name", in the order of `covariance`.
     covariance : ndarray
     condition : float
     findings : tuple of Finding
@@ -56,12 +56,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     seconds : float
         Wall time [s].
     within : mapping of str to float
-        Possible relative error for each purpose, as `Estimate.within`, of all joints together.
+        Possible relative error of all joints together for each purpose, as in `Estimate.within`.
     draws : RobotDraws or None
         Input of `bootstrap`; None if the estimate was read from a file.
     cross_check : CrossCheck or None
-        An independent plain filtered least squares on the signals as recorded, and whether it agrees.
-        None if the estimate was saved without it.
+        Values of an independent least-squares fit to the filtered recorded signals, and whether both fits agree.
+        None if the estimate was saved without a cross-check.
     """
 
     __slots__ = ()
@@ -92,12 +92,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         Returns
         -------
         ndarray
-            Friction, of the same shape [N·m or N].
+            Friction torques [N·m or N], in the shape of `velocity`.
 
         Raises
         ------
         InputError
-            `velocity` has not one finite number for each joint.
+            `velocity` does not have one finite number for each joint.
         """
         from jointid.robot.result.friction import friction_of
 
@@ -116,17 +116,17 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return friction_of(self, speeds)
 
     def predict(self, recording: RobotRecording) -> RobotPrediction:
-        """Predict the torques of a recording, and compare them with the measured ones, as integrals over windows.
+        """Predict the torques of a recording, and compare them with the measured torques, as integrals over windows.
 
         Parameters
         ----------
         recording : RobotRecording
-            A recording of the same robot, usually not the one of the estimate.
+            Recording of the same robot, usually not used for the estimate.
 
         Returns
         -------
         RobotPrediction
-            Relative residuals: of each joint, and of all.
+            Relative residual of each joint, and of all joints together.
 
         Raises
         ------
@@ -141,11 +141,11 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     def bootstrap(self, n: int = 1000, seed: int = 0) -> Bootstrap:
         """Resample blocks of the recordings, and refit all joints to each draw (block bootstrap).
 
-        This checks the standard errors without their formula. A block holds all joints. It lasts an eighth of the
-        recordings, between 0.25 and 1 s, and longer on recordings over 10 min. Each draw is refitted within the bounds,
-        with the balance linearised at the estimate and the same prior on base parameters. Errors are widened by the
-        square root of B / (B - p), for B blocks and p parameters of a joint, by at most 1.41: the fit absorbs this
-        part of the blocks' errors.
+        The draws check the standard errors without their formula. A block contains all joints. It lasts an eighth
+        of the recordings, at least 0.25 s and at most 1 s; recordings over 10 min have longer blocks. Refitted
+        values stay within the bounds, with the same prior on base parameters. The torque balance is linearised at
+        the estimate. For B blocks and p parameters of a joint, errors are multiplied by the square root of B / (B -
+        p), at most by 1.41. The fit absorbs this part of the blocks' errors.
 
         Parameters
         ----------
@@ -157,12 +157,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         Returns
         -------
         Bootstrap
-            Parameters are named as in `parameters`.
+            Bootstrap with the parameter names of `parameters`.
 
         Raises
         ------
         InputError
-            The estimate was read from a file, which has no recordings; or `n` is out of range.
+            The estimate was read from a file and has no recordings, or `n` is out of range.
 
         Examples
         --------
@@ -179,7 +179,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         Parameters
         ----------
         verbose : bool
-            Whether to return everything: tables and all findings. Default False.
+            Whether to return the complete report: tables and all findings. Default False.
         """
         from jointid.robot.result.answers import answer
         from jointid.robot.result.tables import text_report
@@ -193,7 +193,7 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return text_summary(self)
 
     def to_dict(self) -> dict[str, Any]:
-        """Return the result in JSON's types. It contains everything except `draws`."""
+        """Return the estimate in JSON's types, with all attributes except `draws`."""
         from jointid.robot.result.document import document_of
 
         return document_of(self)
@@ -201,12 +201,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
     document = to_dict
 
     def to_json(self) -> str:
-        """Return `to_dict` as JSON text; `from_json` reads it."""
+        """Return `to_dict` as JSON text; `from_json` reads the text."""
         return json.dumps(self.to_dict(), indent=1, ensure_ascii=False, allow_nan=False)
 
     @classmethod
     def from_json(cls, text: str) -> Self:
-        """Return the estimate from a JSON text. Everything except `bootstrap` works with it.
+        """Return the estimate from a JSON text. All its methods except `bootstrap` work.
 
         Raises
         ------
@@ -225,12 +225,12 @@ class RobotEstimate(RobotEstimateRecord, KeptResult):
         return robot_estimate_of(read_json(require_text(text)), cls)
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the parameters of all joints, and the base parameters, as a data frame, one row each.
+        """Return the parameters of all joints, and the base parameters, as a data frame, one row per parameter.
 
         Returns
         -------
         DataFrame
-            Indexed by the names of `parameters`, with the columns of `Estimate.to_pandas`.
+            Data frame indexed by the names of `parameters`, with the columns of `Estimate.to_pandas`.
 
         Raises
         ------

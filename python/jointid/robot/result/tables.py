@@ -63,8 +63,8 @@ def _codes(estimate: RobotEstimateRecord, name: str) -> str:
 def quality(estimate: RobotEstimateRecord) -> list[tuple[str, str]]:
     """Return the quality of the fit and its inputs, as pairs of label and text."""
     inertia = {
-        "urdf": "as the URDF has it",
-        "scaled": "the URDF's, scaled link by link",
+        "urdf": "taken from the URDF",
+        "scaled": "inertia of the URDF, with one identified factor per link",
         "free": f"identified: {len(estimate.base_parameters)} base parameters",
     }[estimate.inertia]
     if estimate.inertia == "free" and estimate.consistent:

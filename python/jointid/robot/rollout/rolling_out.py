@@ -54,9 +54,9 @@ def rollout_robot(
     drive = estimate.robot.drive
     if drive is not None and drive.free:
         raise InputError(
-            f"the gain of {estimate.robot.names[drive.free[0]]} is not determined: its loop cannot be simulated",
+            f"the gain of {estimate.robot.names[drive.free[0]]} is free, so its position loop cannot be simulated",
             argument="subject",
-            remedy="state its kp",
+            remedy="state kp of this joint",
         )
     step, closed = positive_number("", "step", step), drive is not None
     if horizon is not None:
@@ -112,7 +112,7 @@ def _along(
             state = moved(arm, state, push, duration / count)
         if not np.abs(state.velocity).max() < _OUT_OF_BOUNDS:
             raise InputError(
-                "the simulated motion leaves all bounds",
+                "the simulation diverges",
                 argument="recordings",
                 remedy="give a shorter horizon",
             )
