@@ -1,7 +1,8 @@
-"""`make study`: how accurate `identify` is over many seeds, with the failures. Prints a Markdown table.
+"""`make study`: accuracy of `identify` over many seeds, failures included. Prints a Markdown table.
 
-Two sources of spread are separated: the search's seed on one recording, and the noise of simulated recordings that
-are made here by integrating the torque balance (smooth motion, no sticking, so no simulator is needed).
+The study separates two sources of spread: the seed of the search on one recording, and the noise of simulated
+recordings. Their torque follows from the torque balance. The motion is smooth and never sticks, so this needs no
+simulator.
 """
 
 import argparse
@@ -23,7 +24,7 @@ SMOOTH = {"inertia": 0.8, "coulomb": 3.0, "viscous": 5.0, "torque_offset": 0.4}
 
 
 def search_seeds(seeds: int) -> list[str]:
-    """Spread over the genetic algorithm's seeds, on one recording."""
+    """Return the spread of the values over seeds of the genetic algorithm, on one recording."""
     recording = jid.load(WELL_EXCITED)
     exact = jid.identify(recording, jid.thesis_joint(), search="separable")
     found = [
@@ -46,7 +47,7 @@ def search_seeds(seeds: int) -> list[str]:
 
 
 def smooth_recording(seed: int) -> jid.Recording:
-    """Ten seconds at 1 kHz of a joint without a sensor, torque noise 0.3 N·m."""
+    """Return 10 s at 1 kHz of a joint without a sensor, with torque noise of 0.3 N·m."""
     rng = np.random.default_rng(seed)
     time = np.arange(0.0, 10.0, 1e-3)
     rate = np.array([1.3, 2.9, 5.1])
@@ -62,7 +63,7 @@ def smooth_recording(seed: int) -> jid.Recording:
 
 
 def noise_seeds(seeds: int) -> list[str]:
-    """Spread and coverage over recordings with other noise and other motion."""
+    """Return spread and coverage over recordings with different noise and different motion."""
     found = [jid.identify(smooth_recording(seed), search="separable") for seed in range(seeds)]
     lines = [
         f"\n{seeds} recordings of a joint without a sensor (torque noise 0.3 N·m), no options given:\n",

@@ -16,8 +16,8 @@ POPULATION = 200
 REPEATS = 11
 LEAST = 0.02  # [s] per measurement
 COMPRESSED = f"compressed, {POPULATION} per call, one thread"
-THESIS = "`thesis()` search 200 × 1500, one thread, all of it"
-THESIS_CODE = "`thesis_code()` search 200 × 1500, one thread, all of it"
+THESIS = "`thesis()` search 200 × 1500, one thread, whole search"
+THESIS_CODE = "`thesis_code()` search 200 × 1500, one thread, whole search"
 
 
 def measure(contest: Contest) -> list[Record]:
@@ -59,7 +59,7 @@ def measure(contest: Contest) -> list[Record]:
         ),
         THESIS: (preset(_core.GaOptions.thesis()), 200 * 1501),
         THESIS_CODE: (preset(_core.GaOptions.thesis_code()), 200 * 1501),
-        "compression itself (once an identification)": (
+        "compression (once per identification)": (
             lambda: _core.CompressedPenalty(direct, contest.full_lower, contest.full_upper),
             1,
         ),

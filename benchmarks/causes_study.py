@@ -1,4 +1,4 @@
-"""Which cause is named for which broken assumption, over random joints and motions."""
+"""Causes that the findings name for each broken assumption, over random joints and motions."""
 
 import argparse
 import sys
@@ -20,40 +20,42 @@ from plants import Bench, Law, Log, Plant, chirp, simulate, sines, thesis, trape
 
 Array = NDArray[np.float64]
 
-HARM = 0.05  # of a parameter; or two of its errors
-BATCH = 10  # joints of each plant simulated together
+HARM = 0.05  # relative shift of a parameter that counts; two standard errors also count
+BATCH = 10  # joints of each plant in one simulation
 DURATION = 12.0
 _HEADER = (
-    "plant",
-    "sensor: moves a value",
-    "named [%]",
-    "only others",
-    "no sensor: moves a value",
-    "named [%]",
-    "only others",
+    "mismatch of the plant",
+    "with sensor: joints with a shifted value",
+    "cause named [% of these joints]",
+    "joints with only a wrong name",
+    "without sensor: joints with a shifted value",
+    "cause named [% of these joints]",
+    "joints with only a wrong name",
 )
 CAUSES = Part(
     title="Causes",
-    asked="Is the broken assumption named? {joints} random joints per plant, four kinds of motion, 12 s at 1 kHz, seed "
-    "{seed}; one assumption is broken in each row.",
+    asked="Do the findings name the broken assumption? {joints} random joints per plant, four kinds of motion, 12 s "
+    "at 1 kHz, seed {seed}. Each row breaks one assumption.",
     header=_HEADER,
-    reading="*Moves a value*: by more than 5 % or two standard errors. *Named*: of these. *Only others*: a wrong name "
-    "and not the right one. Named without need: {needless}. An elastic gear, backlash, a varying inertia behind a "
-    "sensor and, without a sensor, a wrong torque constant have no name: no recording shows them.",
+    reading="*Shifted value*: the mismatch shifts a parameter by more than 5 % or two standard errors. *Only a wrong "
+    "name*: findings name only other causes. With and without sensor, findings also name the cause for {needless} "
+    "joints without a shifted value. No recording shows an elastic gear, backlash, a varying inertia behind a sensor "
+    "or, without a sensor, a wrong torque constant. So no finding names these mismatches.",
 )
 MILDER = Part(
     title="Causes: milder mismatches",
-    asked="The same with {size:g} of each mismatch; {joints} joints per plant, seed {seed}.",
+    asked="Do the findings name milder mismatches? Each mismatch has {size:g} times its size in [Causes](#causes). "
+    "{joints} joints per plant, seed {seed}.",
     header=_HEADER,
-    reading="Many move no value, and many of the others move it by little more than two standard errors. Named without "
-    "need: {needless}.",
+    reading="Many of these mismatches shift no value. Many others shift a value by little more than two standard "
+    "errors. With and without sensor, findings also name the cause for {needless} joints without a shifted value.",
 )
 SLOW = {"slow_motion", "presliding", "stribeck_exponent"}
 
 
 @dataclass(frozen=True)
 class Case:
-    """One broken assumption: what differs, the model to identify with, and the names that are right."""
+    """One broken assumption: its name, the right names of its cause, and the model of the identification."""
 
     name: str
     right: frozenset[str] = frozenset()
@@ -107,7 +109,7 @@ WITHOUT = (
 def benches(
     case: Case, joints: int, sensor: bool, rng: np.random.Generator, size: float = 1.0
 ) -> list[Bench]:
-    """Random joints of one case on four kinds of motion; what is broken is so by this share of its size."""
+    """Return random joints of one case on four kinds of motion; `size` is the share of the mismatch's full size."""
     found = []
     for kind in range(4):
         runs = len(range(kind, joints, 4))
@@ -183,7 +185,7 @@ def benches(
     return found
 
 
-# What is right at another value than 0, and what is right where it is infinite.
+# Values of a plant without mismatch: other than 0, and infinite.
 _SOUND = {"exponent": 2.0, "torque_scale": 1.0}
 _STIFF = {"bristle_stiffness", "gear_stiffness"}
 _KEPT = {
@@ -197,7 +199,7 @@ _KEPT = {
 
 
 def _smaller(broken: dict[str, object], size: float) -> dict[str, object]:
-    """A mismatch by a share of its size."""
+    """Return a mismatch with a share of its size."""
     found: dict[str, object] = {}
     for name, value in broken.items():
         whole = np.asarray(value, dtype=np.float64)
@@ -214,7 +216,7 @@ def _smaller(broken: dict[str, object], size: float) -> dict[str, object]:
 def runs(
     cases: Sequence[Case], joints: int, sensor: bool, seed: int, size: float = 1.0
 ) -> Iterator[tuple[Case, jid.Recording, jid.Recording]]:
-    """Every case with its recordings: as it is, and the same joint and noise without what is broken."""
+    """Yield each case with two recordings: with the mismatch, and of the same joint and noise without it."""
     rng = np.random.default_rng(seed)
     apart: dict[bool, list[tuple[Case, Bench]]] = {False: [], True: []}
     for case in cases:
@@ -233,7 +235,7 @@ def runs(
 
 
 def _sound(case: Case, plant: Plant) -> Plant:
-    """The plant without its mismatches; the law and the gravity that a model lacks stay what they are."""
+    """Return the plant without its mismatches."""
     new = Plant()
     names = ("inertia", "coulomb", "static", "stribeck", "viscous", "link_inertia", "constant")
     same = {name: getattr(plant, name) for name in (*names, "gravity", "gravity_angle")}
@@ -251,7 +253,7 @@ def _prompt(log: Log) -> Log:
 def identified(
     case: Case, recording: jid.Recording, sensor: bool, shift: dict[str, float] | None = None
 ) -> jid.Estimate:
-    """The estimate with what one knows of a joint."""
+    """Return the estimate of a call with the known facts of the joint."""
     given: dict[str, Any] = {"inertia": float((recording.truth or {})["inertia"])} if sensor else {}
     model = jid.Model.parse("stribeck" if sensor else case.model)
     joint = jid.Joint(gear_ratio=101.0, sensor=sensor, model=model, **given)
@@ -259,9 +261,9 @@ def identified(
 
 
 def named(case: Case, recording: jid.Recording, estimate: jid.Estimate) -> list[str]:
-    """Causes that are named, the first one first; a delay that was taken away is named before the others.
+    """Return the named causes in the order of the findings; removed delays come first.
 
-    A note of a cause that is there and harmless is no name, nor is that of a delay whose removal moved nothing.
+    A note about a harmless cause does not count, nor a delay if its removal shifted no value.
     """
     found = _late(estimate)
     if case.name == "coupling":
@@ -277,7 +279,7 @@ def named(case: Case, recording: jid.Recording, estimate: jid.Estimate) -> list[
 
 
 def _late(estimate: jid.Estimate) -> list[str]:
-    """Delays that are left, or whose removal moved a value."""
+    """Return the delays that remain, and the removed delays that shifted a value."""
     texts = [
         finding.message
         for finding in estimate.findings
@@ -296,7 +298,7 @@ def _full(name: str, detail: str) -> str:
 
 
 def moved(broken: jid.Estimate, sound: jid.Estimate, truths: Sequence[dict[str, object]]) -> bool:
-    """Whether the mismatch moves a parameter by more than a share of it or two errors."""
+    """Return whether the mismatch shifts a parameter by more than 5 % or two standard errors."""
     for name, p in broken.parameters.items():
         if not p.vary or name not in sound.parameters:
             continue
@@ -313,13 +315,13 @@ def moved(broken: jid.Estimate, sound: jid.Estimate, truths: Sequence[dict[str, 
 
 
 def varied(recording: jid.Recording, estimate: jid.Estimate, sensor: bool) -> bool:
-    """Whether a coefficient that is no constant is off, at its extremes, by a share of it or two errors."""
+    """Return whether a varying coefficient differs from its estimate by more than 5 % or two standard errors."""
     plant = recording.metadata["plant"]
     halves = {
         "viscous": 0.5 * abs(plant["viscous_drift"] * plant["viscous"]),
         "coulomb": 0.5 * abs(plant["coulomb_drift"] * plant["coulomb"]),
     }
-    if not sensor:  # behind a sensor the link's inertia is no coefficient
+    if not sensor:  # with a sensor, the link's inertia is not in the model
         halves["inertia"] = (
             0.5 * plant["pose_inertia"] * float(np.ptp(np.cos(2.0 * recording.position)))
         )
@@ -332,13 +334,13 @@ def varied(recording: jid.Recording, estimate: jid.Estimate, sensor: bool) -> bo
 
 @dataclass
 class Row:
-    """What was named for one case."""
+    """Counts of the named causes of one case."""
 
     joints: int = 0
     harmed: int = 0
     named: int = 0
-    harmless: int = 0  # named rightly without need
-    wrong: int = 0  # only others are named
+    harmless: int = 0  # the right cause is named, but no value is shifted
+    wrong: int = 0  # only wrong causes are named
 
     def add(self, right: frozenset[str], harmed: bool, found: list[str]) -> None:
         """Count one joint."""
@@ -352,7 +354,7 @@ class Row:
         self.wrong += bool(found) and not hit
 
     def cells(self, right: frozenset[str]) -> list[object]:
-        """Three columns of the table."""
+        """Return three columns of the table."""
         share = f"{100.0 * self.named / self.harmed:.0f}" if self.harmed and right else "–"
         return [self.harmed, share, self.wrong]
 
@@ -360,7 +362,7 @@ class Row:
 def counted(
     cases: Sequence[Case], joints: int, sensor: bool, seed: int, verbose: bool, size: float = 1.0
 ) -> dict[str, Row]:
-    """What is counted of each case."""
+    """Return the counts of each case."""
     rows = {case.name: Row() for case in cases}
     for first in range(0, joints, BATCH):
         count = min(BATCH, joints - first)
@@ -381,7 +383,7 @@ def counted(
 
 
 def needless(cases: Sequence[Case], rows: Mapping[str, Row]) -> str:
-    """How many mismatches that have a name and move no value are named."""
+    """Return how many mismatches with a name are named although they shift no value."""
     nameable = [rows[case.name] for case in cases if case.right]
     harmless = sum(row.joints - row.harmed for row in nameable)
     return f"{sum(row.harmless for row in nameable)} of {harmless}"
@@ -390,17 +392,19 @@ def needless(cases: Sequence[Case], rows: Mapping[str, Row]) -> str:
 def main() -> None:
     """Publish the table, with a sensor and without one."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--joints", type=int, default=20, help="random joints of each plant")
+    parser.add_argument("--joints", type=int, default=20, help="random joints per plant")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", default="", help="plants whose name contains one of these words")
+    parser.add_argument(
+        "--only", default="", help="only plants with one of these words in their names"
+    )
     parser.add_argument(
         "--size",
         type=float,
         default=1.0,
-        help="of each mismatch, as a share; below 1 most are harmless",
+        help="share of each mismatch's full size; below 1 most mismatches are harmless",
     )
-    parser.add_argument("--verbose", action="store_true", help="print each joint")
-    parser.add_argument("--write", action="store_true", help="write it into the page, too")
+    parser.add_argument("--verbose", action="store_true", help="print the result of each joint")
+    parser.add_argument("--write", action="store_true", help="also write the table into the page")
     given = parser.parse_args()
     began = time.perf_counter()
     words = given.only.split() or [""]

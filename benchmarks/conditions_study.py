@@ -1,8 +1,8 @@
 """`make study`: 46 conditions with random joints each.
 
-Clean conditions show errors, coverage and false findings; mismatches and defects show whether a finding names every
-parameter that is off. Outcomes are kept in `results/conditions_study.jsonl`, which the next call continues: delete it
-when the code has changed. `--page` publishes what is there.
+Clean conditions show errors, coverage and false findings. Mismatches and defects show whether a finding names each
+parameter with a large error. The outcomes are stored in `results/conditions_study.jsonl`, and the next call adds to
+them. Delete this file after a change of the code. `--page` publishes the stored outcomes.
 """
 
 from __future__ import annotations
@@ -23,45 +23,58 @@ from store import Record, Store
 import jointid as jid
 
 PATH = Path(__file__).resolve().parent / "results" / "conditions_study.jsonl"
-OFF = 0.05  # a relative error above this one has to be named
-_SHOWN = 2  # warnings of a row, the most frequent ones
+OFF = 0.05  # a finding must name a larger relative error
+_SHOWN = 2  # number of findings in a row, the most frequent ones
 CLEAN = Part(
     title="Conditions: clean recordings",
-    asked="How accurate is `identify` over many seeds, and what is found falsely? {joints} random joints per "
-    "condition, 12 s at 1 kHz unless stated otherwise, seed {seed}. Parameters more than 5 % off that no finding "
-    "names: {unnamed}.",
-    header=("condition", "all within 5 %", "worst error [%]", "coverage [%]", "false findings"),
-    reading="*Coverage*: 95 % intervals that contain the truth. A finding of uncertainty is false only where the "
-    "intervals are narrow (±4 %, a gain's ±1 %).",
+    asked="How accurate is `identify` on clean recordings, and which findings are false? {joints} random joints per "
+    "condition, 12 s at 1 kHz unless the condition says otherwise, seed {seed}. Parameters with an error above 5 % "
+    "and without a finding: {unnamed}.",
+    header=(
+        "condition",
+        "joints with all errors within 5 %",
+        "largest error [%] (parameter)",
+        "coverage of the 95 % intervals [%]",
+        "false findings: number of joints",
+    ),
+    reading="*Sensor*: the joint has a torque sensor. A finding that states a large uncertainty is false only if all "
+    "95 % intervals are narrow: within ±4 % of the value, for the sensor's gain within ±1 %.",
 )
 WRONG = Part(
     title="Conditions: mismatches and defects",
-    asked="What becomes of a joint or recording that is not as assumed? {joints} random joints per condition; the "
-    "two most frequent warnings. Parameters more than 5 % off that no finding names: {unnamed}.",
-    header=("condition", "all within 5 %", "worst error [%]", "coverage [%]", "warnings"),
-    reading="A finding names a parameter if it lists it, or if it is blocking.",
+    asked="How accurate is `identify` on a joint or a recording that violates an assumption? {joints} random joints "
+    "per condition. Only the two most frequent findings of a condition are shown. Parameters with an error above 5 % "
+    "and without a finding: {unnamed}.",
+    header=(
+        "condition",
+        "joints with all errors within 5 %",
+        "largest error [%] (parameter)",
+        "coverage of the 95 % intervals [%]",
+        "warnings and blocking findings: number of joints",
+    ),
+    reading="A warning names the parameters that it lists. A blocking finding counts for all parameters.",
 )
-_SIDE_BY_SIDE = 250  # runs of one simulation
-_ROUND = 10  # joints of each condition
+_SIDE_BY_SIDE = 250  # most runs of one simulation
+_ROUND = 10  # joints of each condition in a round
 _NEAR_ZERO = ("torque_offset", "sensor_offset", "gravity_cos", "gravity_sin")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """One identification against the truth.
+    """One identification compared with the truth.
 
     Attributes
     ----------
     errors : dict of str to float
-        Relative; infinite for a parameter that the estimate does not have.
+        Relative errors; infinite for a parameter that the estimate does not have.
     inside : dict of str to bool
         Whether the 95 % interval contains the truth; no entry without an interval.
     named : frozenset of str
         Parameters that a finding of severity "warning" or "blocking" names.
     codes : frozenset of str
-        Of those findings.
+        Codes of these findings.
     false : frozenset of str
-        Of those that would be false if the recording is clean.
+        Codes of the findings that are false if the recording is clean.
     """
 
     errors: dict[str, float]
@@ -72,23 +85,23 @@ class Outcome:
 
     @property
     def off(self) -> list[str]:
-        """Parameters that are off by more than 5 %."""
+        """Parameters with an error above 5 %."""
         return [name for name, error in self.errors.items() if abs(error) > OFF]
 
     @property
     def unnamed(self) -> list[str]:
-        """Those of them that no finding names."""
+        """Parameters with an error above 5 % that no finding names."""
         return [name for name in self.off if name not in self.named]
 
 
 def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
-    """Identify one recording, and hold it against its truth."""
+    """Identify one recording, and compare the estimate with the truth."""
     estimate = jid.identify(recording, condition.joint(recording))
     truth = dict(recording.truth or {})
     for name in ("torque_offset", "sensor_offset"):
         if name in truth:
             truth[name] += _undivided(recording)
-    if truth["static"] == 0.0:  # without static friction its shape means nothing
+    if truth["static"] == 0.0:  # the shape of a missing static friction is undefined
         truth = {name: value for name, value in truth.items() if name not in ("static", "stribeck")}
     errors, inside = {}, {}
     for name, true in truth.items():
@@ -98,7 +111,7 @@ def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
             continue
         scale = abs(true)
         if name in _NEAR_ZERO:
-            scale = max(scale, truth["coulomb"])  # these may be near 0
+            scale = max(scale, truth["coulomb"])  # the true value may be near 0
         error = np.inf if parameter is None else (parameter.value - true) / scale
         errors[name] = float(error)
         if parameter is not None and parameter.interval is not None:
@@ -107,7 +120,7 @@ def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
     serious = [f for f in estimate.findings if f.severity != "info"]
     named = {name for finding in serious for name in finding.parameters}
     if any(finding.severity == "blocking" for finding in serious):
-        named |= set(errors)  # the values cannot be used, and it says so
+        named |= set(errors)  # a blocking finding says that no value can be used
     codes = {finding.code for finding in serious}
     return Outcome(
         errors=errors,
@@ -119,18 +132,18 @@ def outcome(condition: Condition, recording: jid.Recording) -> Outcome:
 
 
 def _undivided(recording: jid.Recording) -> float:
-    """Half of the difference of the Coulomb frictions, which no recording tells from an offset."""
+    """Return half of the difference of both Coulomb frictions; no recording separates it from an offset."""
     plant = recording.metadata["plant"]
     return float(plant["asymmetry"] * plant["coulomb"])
 
 
 UNCERTAIN = {"undetermined", "at_bound", "model_too_rich", "noisy_velocity"}
-_WIDE = 0.04  # what `undetermined` says: half of a 95 % interval
+_WIDE = 0.04  # limit of `undetermined` for half of a 95 % interval, relative
 _WIDE_GAIN = 0.01
 
 
 def uncertain(estimate: jid.Estimate, truth: Mapping[str, float]) -> bool:
-    """Whether a 95 % interval is wider than ±4 % (a gain's: ±1 %), so that a finding that says so is not false."""
+    """Return whether a 95 % interval is wider than ±4 % (a gain's: ±1 %); then a finding of uncertainty is right."""
     gravity = float(np.hypot(truth.get("gravity_cos", 0.0), truth.get("gravity_sin", 0.0)))
     for name, parameter in estimate.parameters.items():
         if not parameter.vary or name not in truth:
@@ -147,13 +160,13 @@ def uncertain(estimate: jid.Estimate, truth: Mapping[str, float]) -> bool:
 
 
 def measure(store: Store, conditions: Sequence[Condition], joints: int, seed: int) -> None:
-    """Add rounds of ten joints of each condition to the store, all of a round simulated side by side."""
+    """Add rounds of ten joints per condition to the store; one simulation has all joints of a round."""
     for number in range((joints + _ROUND - 1) // _ROUND):
         size = min(_ROUND, joints - number * _ROUND)
         missing = [c for c in conditions if not store.of("round", condition=c.name, round=number)]
         for begin in range(0, len(missing), _SIDE_BY_SIDE // _ROUND):
             together = missing[begin : begin + _SIDE_BY_SIDE // _ROUND]
-            # A condition's joints do not depend on which others run.
+            # The joints of a condition do not depend on the other conditions.
             draws = [np.random.default_rng([seed, CONDITIONS.index(c), number]) for c in together]
             benches = [c.bench(size, rng) for c, rng in zip(together, draws, strict=True)]
             noise = int(np.random.SeedSequence([seed, number, begin]).generate_state(1)[0])
@@ -172,7 +185,7 @@ def _record(found: Outcome) -> Record:
 
 
 def outcomes(store: Store, condition: Condition) -> list[Outcome]:
-    """The kept runs of a condition."""
+    """Return the stored runs of a condition."""
     return [
         Outcome(
             errors=each["errors"],
@@ -193,7 +206,7 @@ def _cut(condition: Condition, recording: jid.Recording) -> jid.Recording:
 
 
 def row(condition: Condition, found: Sequence[Outcome]) -> list[str]:
-    """One line of the table."""
+    """Return one line of the table."""
     good = sum(not each.off for each in found)
     worst = max(
         ((abs(error), name) for each in found for name, error in each.errors.items()),
@@ -212,7 +225,7 @@ def row(condition: Condition, found: Sequence[Outcome]) -> list[str]:
 
 
 def unnamed(found: Sequence[tuple[Condition, Sequence[Outcome]]]) -> str:
-    """How many parameters are off that no finding names, by condition."""
+    """Return the numbers of parameters with a large error that no finding names, by condition."""
     counts = {c.name: sum(len(each.unnamed) for each in runs) for c, runs in found}
     listed = [f"**{count}** ({name})" for name, count in counts.items() if count]
     return ", ".join(listed) or "none"
@@ -221,12 +234,19 @@ def unnamed(found: Sequence[tuple[Condition, Sequence[Outcome]]]) -> str:
 def main() -> None:
     """Run the conditions and publish the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--joints", type=int, default=20, help="random joints a condition")
-    parser.add_argument("--clean-joints", type=int, default=0, help="of the clean ones, if others")
+    parser.add_argument("--joints", type=int, default=20, help="random joints per condition")
+    parser.add_argument(
+        "--clean-joints",
+        type=int,
+        default=0,
+        help="random joints per clean condition, if different",
+    )
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--only", default="", help="conditions whose name contains this")
-    parser.add_argument("--write", action="store_true", help="write them into the page, too")
-    parser.add_argument("--page", action="store_true", help="only the tables, of what is kept")
+    parser.add_argument("--write", action="store_true", help="also write the tables into the page")
+    parser.add_argument(
+        "--page", action="store_true", help="only the tables of the stored outcomes"
+    )
     given = parser.parse_args()
     began = time.perf_counter()
     chosen = [c for c in CONDITIONS if given.only in c.name]

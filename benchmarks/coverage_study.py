@@ -17,7 +17,7 @@ from simulated_joint import TRUTH, simulate
 
 
 def coverage(recordings: list[jid.Recording]) -> tuple[list[str], dict[str, int]]:
-    """One line a parameter, and how often each warning was raised."""
+    """Return one line per parameter, and the number of recordings with each warning."""
     found = [jid.identify(run, jid.thesis_joint(), search="separable") for run in recordings]
     lines = [
         "| parameter | truth | bias | spread | mean standard error | 95 % interval contains the truth |",

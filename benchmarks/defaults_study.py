@@ -1,7 +1,8 @@
-"""How few candidates suffice: seeds of 100 that reach the separable optimum, by population and generations. Markdown.
+"""Least number of candidates: how many of 100 seeds reach the separable optimum, by population and generations.
 
-Reached means a penalty within 1e-6 of the optimum's, relative. "alone" leaves out the search over the shapes' whole
-ranges with which the polish ends: what the genetic algorithm and the local polish do by themselves.
+Prints a Markdown table. A seed reaches the optimum if its penalty is at most 1e-6 above the optimal one, relative. The
+polish ends with a search over the whole ranges of the shape parameters. "alone" leaves out this search: it shows the
+result of only the genetic algorithm and the local polish.
 """
 
 import argparse
@@ -24,7 +25,7 @@ CLOSE = 1e-6
 def problem(
     recording: jid.Recording, joint: jid.Joint | None, **model: Any
 ) -> tuple[_core.Penalty, SearchDomain]:
-    """The penalty and its domain as `identify` makes them."""
+    """Return the penalty and its domain, as in `identify`."""
     residual = model.pop("residual", None)
     name = model.pop("model", None)
     request = Request(model=jid.Model(name, **model), residual=residual)
@@ -37,7 +38,7 @@ def problem(
 def reached(
     penalty: _core.Penalty, domain: SearchDomain, options: _core.GaOptions, seeds: int
 ) -> tuple[int, int]:
-    """Seeds that reach the optimum with the whole polish, and alone."""
+    """Return the numbers of seeds that reach the optimum: with the whole polish, and with the local polish alone."""
     engine = Engine.of(penalty, domain, 0)
     low, high = domain.lower, domain.upper
     best = _core.minimise_separable(engine.form, low, high).best

@@ -1,7 +1,7 @@
-"""`make study`: signals that are late, and signals that are not.
+"""`make study`: recordings with a late signal, and recordings without.
 
-Each recording has one signal late by 1 to 3 ms, or none; half of them are taken every millisecond, half every
-second one. Others have a model error that could pass for a delay.
+In a recording, one signal is late by 1 to 3 ms, or none. Half of the recordings have a sample period of 1 ms, half of
+2 ms. Some recordings have a model error that looks like a delay.
 """
 
 from __future__ import annotations
@@ -22,56 +22,58 @@ from plants import Bench, simulate
 
 import jointid as jid
 
-NEAR = 3e-4  # [s] from the true delay
-CLOSE = 0.015  # of the true value, with the delay taken away
+NEAR = 3e-4  # [s] largest distance from the true delay
+CLOSE = 0.015  # largest relative error of a parameter after the delay is removed
 LATE = Part(
     title="Delays",
-    asked="Is a torque, velocity or sensor reading that is 1 to 3 ms late found? Random joints, four motions, 12 s, "
-    "sensor noise 0.2 N·m.",
+    asked="Does `identify` find a torque, velocity or sensor reading that is 1 to 3 ms late? Random joints, four "
+    "motions, 12 s, sensor noise 0.2 N·m.",
     header=(
-        "late signal",
+        "late signal, sampling rate",
         "runs",
-        "named within 0.3 ms",
-        "named, further off",
-        "median error [ms]",
-        "in its 95 % interval",
-        "others called late",
-        "all parameters within 1.5 %; nothing late",
+        "delay found, error below 0.3 ms",
+        "delay found, larger error",
+        "median error of the found delay [ms]",
+        "95 % intervals that contain the true delay",
+        "runs with a false delay of another signal",
+        "runs with all parameters within 1.5 %: signal late; signal on time",
     ),
-    reading="The last column compares the values with the delay removed to those before the signal was made late.",
+    reading="The last column compares two identifications: of the recording with the late signal, and of this "
+    "recording before the program delays its signal. `identify` removes a found delay.",
 )
 PROMPT = Part(
     title="Delays: nothing is late",
-    asked="Is a signal called late that is not?",
-    header=("recording", "runs", "called late"),
+    asked="Does `identify` report a delay although no signal is late?",
+    header=("recording", "runs", "runs with a false delay: signal"),
 )
 SILENT = Part(
     title="Delays: a reading that is not fed back",
-    asked="How near does the estimate come to what the recording can tell, where no controller feeds the sensor's "
-    "noise back? The least standard error is the Cramér-Rao bound of each run (`benchmarks/delay_limit.py`).",
+    asked="How accurate is the found delay of a sensor reading that the controller does not use? Its error is "
+    "compared with the least possible standard error, the Cramér-Rao bound of each run (`benchmarks/delay_limit.py`).",
     header=(
-        "rate",
+        "sampling rate",
         "runs",
-        "least standard error [ms]: median, 90 %",
-        "determinable to 0.3 ms",
-        "named within",
-        "of the others",
-        "error / least error, median",
-        "in its 95 % interval",
+        "least standard error [ms]: median, 90 % quantile",
+        "runs that determine the delay to 0.3 ms",
+        "of these runs: delay found to 0.3 ms",
+        "of the other runs: delay found to 0.3 ms",
+        "error / least standard error, median",
+        "95 % intervals that contain the true delay",
     ),
-    reading="An efficient estimate has a median ratio of 0.67.",
+    reading="If the standard error equals the least standard error, the median of error / least standard error is "
+    "0.67.",
 )
-_ROUNDED = 1e-5  # [s]; of a delay that nothing but rounding makes uncertain
+_ROUNDED = 1e-5  # [s] uncertainty of a delay from rounding alone
 _MOTIONS = ("thesis", "sines", "trapezoids", "chirp")
 _MISMATCHES: Mapping[str, Mapping[str, Any]] = {
-    "viscous drift -30 %": {"plant": {"viscous_drift": -0.3}},
+    "viscous friction drifts by -30 %": {"plant": {"viscous_drift": -0.3}},
     "presliding": {"plant": LUGRE},
-    "asymmetry 20 %": {"plant": {"asymmetry": 0.2}},
-    "Stribeck exponent 1": {"plant": {"exponent": 1.0}},
+    "friction asymmetry 20 %": {"plant": {"asymmetry": 0.2}},
+    "Stribeck exponent 1 instead of 2": {"plant": {"exponent": 1.0}},
     "inertia varies": {"plant": POSE},
-    "0.3 N·m of sin 3q": {"plant": {"harmonic_torque": 0.3}},
-    "load friction 0.03": {"plant": {"load_friction": 0.03}},
-    "torque constant 10 % off": {"plant": {"torque_scale": 1.1}},
+    "torque 0.3 N·m · sin 3q": {"plant": {"harmonic_torque": 0.3}},
+    "load friction, coefficient 0.03": {"plant": {"load_friction": 0.03}},
+    "torque constant wrong by 10 %": {"plant": {"torque_scale": 1.1}},
 }
 
 
@@ -83,7 +85,7 @@ class Case:
     ----------
     title : str
     signal : str
-        That is late; empty: none.
+        Name of the late signal; empty if no signal is late.
     condition : Condition
     """
 
@@ -93,12 +95,12 @@ class Case:
 
     @property
     def silent(self) -> bool:
-        """Whether the motion alone tells the sensor's delay."""
+        """Whether only the motion shows the delay of the sensor."""
         return self.signal == "sensor" and self.condition.law.get("feedback") == 0.0
 
 
 def cases() -> list[Case]:
-    """Every kind of recording, in the order of the tables."""
+    """Return every kind of recording, in the order of the tables."""
     found = []
     for every in (1, 2):
         for motion in _MOTIONS:
@@ -110,7 +112,7 @@ def cases() -> list[Case]:
                 )
                 if signal == "sensor":
                     silent = Condition(law={"feedback": 0.0}, **common)
-                    title = f"sensor, {rate}, its reading is not fed back"
+                    title = f"sensor, {rate}, not used by the controller"
                     found.append(Case(title=title, signal=signal, condition=silent))
             found.append(Case(title=f"clean, {rate}", signal="", condition=Condition(**common)))
             for name, fields in _MISMATCHES.items():
@@ -119,7 +121,7 @@ def cases() -> list[Case]:
 
 
 def late(recording: jid.Recording, signal: str, delay: float) -> jid.Recording:
-    """The recording with a signal that is late; between samples it is interpolated."""
+    """Return the recording with a late signal, interpolated between samples."""
     signals = {name: getattr(recording, name) for name in recording.signals}
     signals[signal] = late_signal(recording, signal, delay)
     return jid.Recording(
@@ -132,24 +134,24 @@ def late(recording: jid.Recording, signal: str, delay: float) -> jid.Recording:
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What became of one recording.
+    """Result for one recording.
 
     Attributes
     ----------
     error : float
-        Of the delay that is certain [s]; infinite where none is.
+        Error of the certain delay [s]; infinite if no delay is certain.
     stated : float
-        Its standard error [s].
+        Standard error of the certain delay [s].
     false : frozenset of str
-        Other signals that are called late.
+        Other signals with a reported delay.
     worst : float
-        Largest relative error of a parameter, the offset's relative to the Coulomb friction.
+        Largest relative error of a parameter; for the offset, relative to the Coulomb friction.
     before : float
-        The same of the recording before its signal was made late.
+        Largest relative error of a parameter before the signal is delayed.
     limit : Limit or None
-        How well the recording can tell the delay at all; known where the reading is not fed back.
+        Cramér-Rao bound of the delay; None if the controller uses the reading.
     apart : float
-        Error over its standard error of a delay that was measured, certain or not; NaN of one that was not.
+        Error of the measured delay, certain or not, over its standard error; NaN if no delay is measured.
     """
 
     error: float
@@ -164,7 +166,7 @@ class Outcome:
 def outcome(
     case: Case, recording: jid.Recording, delay: float, quiet: jid.Recording | None = None
 ) -> Outcome:
-    """Identify one recording with its signal late; `quiet` is the same without noise of the sensor."""
+    """Identify a recording after its signal is delayed; `quiet` is the recording without noise of the sensor."""
     before = 0.0
     if case.signal:
         nothing_late = Case(title=case.title, signal="", condition=case.condition)
@@ -199,7 +201,7 @@ Found = Mapping[str, tuple[Case, Sequence[Outcome]]]
 
 
 def outcomes(runs: int, seed: int, only: str = "") -> Found:
-    """Of all recordings, by the title of their case."""
+    """Return the outcomes of all recordings, by the title of their case."""
     drawn = np.random.default_rng([seed, 1])
     each: list[tuple[Case, Bench]] = []
     for case in cases():
@@ -227,13 +229,13 @@ def outcomes(runs: int, seed: int, only: str = "") -> Found:
 
 
 def _quiet(bench: Bench, seed: int) -> list[jid.Recording | None]:
-    """What the sensors would read without noise: nothing feeds it back, so the motion is the same."""
+    """Return the recordings without sensor noise; the controller does not use the sensor, so the motion is the same."""
     log = replace(bench.log, sensor_noise=0.0)
     return list(simulate(replace(bench, log=log), duration=DURATION, seed=seed))
 
 
 def late_rows(found: Found) -> Iterator[list[object]]:
-    """A line a late signal."""
+    """Yield one line per late signal."""
     for title, (case, runs) in found.items():
         if case.signal:
             named = [each for each in runs if np.isfinite(each.error)]
@@ -253,7 +255,7 @@ def late_rows(found: Found) -> Iterator[list[object]]:
 
 
 def prompt_rows(found: Found) -> Iterator[list[object]]:
-    """A line a recording in which nothing is late."""
+    """Yield one line per kind of recording without a late signal."""
     for title, (case, runs) in found.items():
         if not case.signal:
             false = [name for each in runs for name in sorted(each.false)]
@@ -262,7 +264,7 @@ def prompt_rows(found: Found) -> Iterator[list[object]]:
 
 
 def silent_rows(found: Found) -> Iterator[list[object]]:
-    """How near the delays of readings that are not fed back come to what the recordings can tell."""
+    """Yield one line per rate: errors of delays compared with their Cramér-Rao bounds."""
     for title, (case, runs) in found.items():
         if not case.silent:
             continue
@@ -288,10 +290,10 @@ def silent_rows(found: Found) -> Iterator[list[object]]:
 def main() -> None:
     """Run the cases and publish the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=13, help="joints of each motion and rate")
+    parser.add_argument("--runs", type=int, default=13, help="number of joints per motion and rate")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--only", default="", help="cases whose title contains this")
-    parser.add_argument("--write", action="store_true", help="write them into the page, too")
+    parser.add_argument("--only", default="", help="only cases with this text in their titles")
+    parser.add_argument("--write", action="store_true", help="also write the tables into the page")
     given = parser.parse_args()
     began = time.process_time()
     found = outcomes(given.runs, given.seed, given.only)

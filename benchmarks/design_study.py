@@ -1,7 +1,7 @@
-"""What designed motions are worth, by identifications from many simulated recordings. By hand.
+"""Errors with designed motions, from identifications of many simulated recordings. By hand.
 
-Every error is counted: recordings are simulated with noise, and
-identified with default settings (the minimum that the separable search finds is that of the default one).
+The recordings are simulated with noise, and identified with the separable search, which is the default. Every
+error counts.
 """
 
 import argparse
@@ -56,27 +56,46 @@ MOTIONS = {
     "60°, 3 s": jid.Trajectory.thesis(math.radians(60.0), cycle=3.0),
 }
 SENSORS = jid.Sensors(torque_noise=0.5)
-SMALL = 0.05  # error of a parameter that counts in the comparison of random joints
+SMALL = 0.05  # largest error of a parameter that counts in the comparison of random joints
 PATH = Path(__file__).resolve().parent / "results" / "design_study.jsonl"
 DESIGNED = Part(
     title="Designed motions",
-    asked="How much better is a designed motion? RMS error [%] of the worst parameter over {runs} simulated recordings "
-    "of 12 s (±60°, 3.4 rad/s, 160 N·m, sensor noise 0.5 N·m).",
-    header=("situation", *MOTIONS, "designed", "times better", "expected / observed"),
-    reading="1 is the thesis's joint, 2 another one; the controller's parameters are right or wrong; the last four are "
-    "joint 1, hanging, wrong. The prior is the truth ± 20 %. The last column is the range over the parameters.",
+    asked="How much smaller are the errors with a designed motion than with a default motion? RMS error of the worst "
+    "parameter over {runs} simulated recordings of 12 s. Limits: ±60°, 3.4 rad/s, 160 N·m. Sensor noise: 0.5 N·m.",
+    header=(
+        "situation",
+        *(f"default motion ({each}): error [%]" for each in MOTIONS),
+        "designed motion: error [%]",
+        "error ratio: better default motion / designed motion",
+        "expected / observed error, range",
+    ),
+    reading="Joint 1 is the thesis's joint, joint 2 is another joint. The controller's parameters are right or wrong. "
+    "The last four rows have joint 1, hanging, with wrong parameters. The prior range is the true value ± 20 %. The "
+    "last column has the smallest and the largest ratio of all parameters.",
 )
 PRIORS = Part(
     title="Designed motions: a wrong prior",
-    asked="What does a prior around twice or half the truth cost? RMS error [%] of the worst parameter over {runs} "
-    "identifications; in brackets over that with the right prior.",
-    header=("situation", "twice", "half", "limits kept"),
+    asked="How much larger are the errors if the prior is centered at twice or half the true values? RMS error of the "
+    "worst parameter over {runs} identifications. In brackets: ratio to the error with the right prior.",
+    header=(
+        "situation",
+        "prior at twice the truth: error [%]",
+        "prior at half the truth: error [%]",
+        "motions keep the limits",
+    ),
 )
 WIDE = Part(
     title="Designed motions: a wide prior",
-    asked="What is one motion worth that is designed for the joint's bounds, for joints drawn evenly in them? "
-    "Compared with the default motion (20°, 6 s) over the parameters with an error below 5 %.",
-    header=("link", "joints", "limits kept", "smaller worst error", "median ratio"),
+    asked="How well does one motion identify all joints within the bounds? The design knows only the joint's bounds. "
+    "The joints are drawn uniformly within these bounds. The largest error of a parameter is compared with that of "
+    "the default motion (20°, 6 s). Only parameters with an error below 5 % in at least one motion count.",
+    header=(
+        "link",
+        "joints",
+        "joints that keep the limits",
+        "joints that the designed motion improves",
+        "largest error: default / designed motion, median",
+    ),
 )
 
 Values = Mapping[str, Any]
@@ -94,7 +113,7 @@ class Case:
     motions: Mapping[str, jid.Trajectory] = dataclasses.field(default_factory=lambda: MOTIONS)
 
     def prior(self, factor: float = 1.0, share: float = 0.2) -> dict[str, tuple[float, float]]:
-        """Ranges around `factor` times the truth."""
+        """Return ranges around `factor` times the truth."""
         ranges = {}
         for name, value in self.truth.items():
             ends = sorted((factor * value * (1.0 - share), factor * value * (1.0 + share)))
@@ -103,7 +122,7 @@ class Case:
 
 
 def posed(hanging: bool, **changes: Any) -> jid.Joint:
-    """The thesis's joint with its link about the vertical or the horizontal."""
+    """Return the thesis's joint with a hanging or a horizontal link."""
     joint = jid.thesis_joint()
     assert joint.link is not None
     link = dataclasses.replace(joint.link, angle=-math.pi / 2.0 if hanging else 0.0)
@@ -111,12 +130,12 @@ def posed(hanging: bool, **changes: Any) -> jid.Joint:
 
 
 def law(believed: Values) -> Any:
-    """The adaptive-robust law on the reference's velocity."""
+    """Return the adaptive-robust law with friction compensation at the reference velocity."""
     return jid.AdaptiveRobust(inertia=INERTIA, friction_velocity="reference", **believed)
 
 
 def situations() -> list[Case]:
-    """The eight of the table."""
+    """Return the eight situations of the table."""
     found = []
     for number, truth in JOINTS.items():
         for hanging in (True, False):
@@ -137,7 +156,7 @@ def situations() -> list[Case]:
 
 
 def others() -> list[Case]:
-    """Without a sensor, with a coarse encoder, with ripple, with inertia and gravity free."""
+    """Return cases without a sensor, with a coarse encoder, with ripple, and with free inertia and gravity."""
     truth = JOINTS[1]
     friction = {n: v for n, v in truth.items() if not n.startswith("sensor")}
     believed: dict[str, Any] = {n: v for n, v in WRONG.items() if not n.startswith("sensor")}
@@ -196,9 +215,9 @@ def others() -> list[Case]:
 def observed(
     case: Case, trajectory: jid.Trajectory, runs: int, first: int = 5000
 ) -> dict[str, Any]:
-    """Relative errors of identifications from simulated recordings, and what the joints reached.
+    """Return relative errors of identifications from simulated recordings, and the largest reached signals.
 
-    The joints lie within half a per cent of the truth: an encoder's steps are then noise, not one draw of it.
+    The parameters of the joints vary within 0.5 % of the truth. So the encoder's quantization errors differ.
     """
     errors, warned = [], 0
     low, high, speed, torque = math.inf, -math.inf, 0.0, 0.0
@@ -233,7 +252,7 @@ def observed(
 
 
 def nearby(truth: Values, seed: int) -> dict[str, float]:
-    """A joint within half a per cent of this one, and within the bounds of the thesis's joint."""
+    """Return parameters within 0.5 % of the truth, and within the bounds of the thesis's joint."""
     steps = np.random.default_rng(seed + 10**6).uniform(-0.005, 0.005, len(truth))
     bounds = jid.thesis_joint().parameters
     found = {}
@@ -245,13 +264,13 @@ def nearby(truth: Values, seed: int) -> dict[str, float]:
 
 
 def worst(rms: Values) -> tuple[float, str]:
-    """The largest error, and whose it is."""
+    """Return the largest error and its parameter's name."""
     name = max(rms, key=lambda each: rms[each])
     return rms[name], name
 
 
 def kept(reached: list[float]) -> bool:
-    """Whether all limits were kept."""
+    """Return whether all limits were kept."""
     low, high = LIMITS.position
     assert LIMITS.torque is not None
     within = low <= reached[0] and reached[1] <= high
@@ -259,7 +278,7 @@ def kept(reached: list[float]) -> bool:
 
 
 def designed(case: Case, factor: float = 1.0, seed: int = 0, **options: Any) -> tuple[Any, float]:
-    """The design of a case, and the CPU time that it took [s]."""
+    """Return the design of a case, and its CPU time [s]."""
     started = time.process_time()
     search = jid.DesignSearch(seed=seed)
     design = jid.design_excitation(
@@ -274,7 +293,7 @@ def designed(case: Case, factor: float = 1.0, seed: int = 0, **options: Any) -> 
 
 
 def run_case(case: Case, runs: int) -> dict[str, Any]:
-    """The design, and the two other motions."""
+    """Return the errors with the designed motion and with the two default motions."""
     design, spent = designed(case)
     record = {"name": case.name, "spent": spent, "kept": True}
     found = observed(case, design.trajectory, runs)
@@ -286,14 +305,14 @@ def run_case(case: Case, runs: int) -> dict[str, Any]:
 
 
 def run_prior(case: Case, factor: float, runs: int) -> dict[str, Any]:
-    """The design for a prior around a multiple of the truth."""
+    """Return the errors with a design for a prior around a multiple of the truth."""
     design, _ = designed(case, factor)
     found = observed(case, design.trajectory, runs)
     return {"name": case.name, "factor": factor, "design": found, "kept": kept(found["reached"])}
 
 
 def run_random(hanging: bool, count: int, runs: int) -> list[dict[str, Any]]:
-    """One design for the joint's bounds, and joints drawn in them."""
+    """Return the errors of random joints within the bounds, with one design for these bounds."""
     joint = posed(hanging)
     design = jid.design_excitation(joint, LIMITS, sensors=SENSORS)
     random = np.random.default_rng(77)
@@ -314,7 +333,7 @@ def run_random(hanging: bool, count: int, runs: int) -> list[dict[str, Any]]:
 
 
 def measure(store: Store, runs: int, joints: int) -> None:
-    """All sections, each row once."""
+    """Measure all rows that the store lacks."""
 
     def once(kind: str, key: dict[str, Any], make: Callable[[], dict[str, Any]]) -> None:
         if store.of(kind, **key):
@@ -340,18 +359,18 @@ def measure(store: Store, runs: int, joints: int) -> None:
 
 
 def percent(value: float) -> str:
-    """A share, of which two digits count."""
+    """Return a share in %, with two significant digits."""
     return f"{100.0 * value:.2g}"
 
 
 def cell(rms: Values) -> str:
-    """The worst error of a motion."""
+    """Return the worst error of a motion, with its parameter."""
     size, name = worst(rms)
     return f"{percent(size)} {name}"
 
 
 def rows(records: list[dict[str, Any]]) -> Iterator[list[str]]:
-    """One line a situation: worst errors of each motion, and expected over observed."""
+    """Yield one line per situation: worst error of each motion, and the ratios of expected to observed errors."""
     for each in records:
         others = [each[name]["rms"] for name in MOTIONS]
         found = each["design"]["rms"]
@@ -362,7 +381,7 @@ def rows(records: list[dict[str, Any]]) -> Iterator[list[str]]:
 
 
 def prior_rows(store: Store) -> Iterator[list[str]]:
-    """One line a situation: its error with a wrong prior."""
+    """Yield one line per situation: its worst error with a wrong prior."""
     for each in store.of("situation"):
         cells, all_kept = [], True
         for factor in (2.0, 0.5):
@@ -374,7 +393,7 @@ def prior_rows(store: Store) -> Iterator[list[str]]:
 
 
 def wide_rows(store: Store) -> Iterator[list[object]]:
-    """What one motion is worth for joints drawn in wide bounds."""
+    """Yield one line per link position: errors of one motion for random joints within wide bounds."""
     for hanging in (True, False):
         records = store.of("random", hanging=hanging)
         if records:
@@ -389,8 +408,12 @@ if __name__ == "__main__":
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--runs", type=int, default=400)
     arguments.add_argument("--joints", type=int, default=50)
-    arguments.add_argument("--page", action="store_true", help="only the tables, of what is kept")
-    arguments.add_argument("--write", action="store_true", help="write them into the page, too")
+    arguments.add_argument(
+        "--page", action="store_true", help="only the tables of the stored outcomes"
+    )
+    arguments.add_argument(
+        "--write", action="store_true", help="also write the tables into the page"
+    )
     given = arguments.parse_args()
     store = Store(PATH, {"runs": given.runs, "joints": given.joints})
     if not given.page:

@@ -21,21 +21,22 @@ FILE = Path(__file__).parent.parent / "examples" / "hardware" / "joint.toml"
 TRACKING = Part(
     title="Session on the emulated drive",
     asked="By how much does a session on the **emulated drive** reduce the tracking error? "
-    "`examples/hardware/joint.toml`, two cycles from Table 6-3's initial estimates, {seeds} seeds; medians of the RMS "
-    "error [mrad].",
+    "`examples/hardware/joint.toml`, {seeds} seeds. A session has two cycles of run and identification, and starts "
+    "with Table 6-3's initial estimates. The errors are medians of the RMS tracking error.",
     header=(
         "bench",
-        "before",
-        "after",
-        "true parameters",
-        "after / true, worst",
-        "before / after, smallest",
+        "initial parameters: error [mrad]",
+        "identified parameters: error [mrad]",
+        "true parameters: error [mrad]",
+        "error ratio: identified / true parameters, largest",
+        "error ratio: initial / identified parameters, smallest",
     ),
 )
 NAMES = ("coulomb", "static", "stribeck", "viscous", "sensor_gain", "sensor_offset")
 ERRORS = Part(
     title="Estimates on the emulated drive",
-    asked="How accurate is the last estimate of these {seeds} sessions? Relative error [%]: mean (worst).",
+    asked="How accurate is the last estimate of these {seeds} sessions? Relative error of each parameter [%]: mean "
+    "(largest).",
     header=("bench", *NAMES),
 )
 

@@ -1,9 +1,9 @@
-"""Are the standard errors those of resampled motion? By hand; prints a Markdown table.
+"""Do the standard errors agree with the spread over resampled motion? By hand; prints a Markdown table.
 
-Real logs of robots, kept beside the repository, are identified; then stretches of each log are drawn anew (moving
-blocks of several lengths) and the linearised balance is solved for each draw, by other code than
-`estimate.bootstrap()`. The rule that is fixed in advance is that of `bootstrap()`: a block lasts an eighth of the
-motion, but 0.25 to 1 s. The other lengths show what the rule decides.
+The study identifies real logs of robots, from a folder next to the repository. Then it resamples moving blocks of each
+log, with several lengths. For each draw it solves the linearized balance, with other code than
+`estimate.bootstrap()`. By the rule of `bootstrap()`, a block lasts an eighth of the motion, but at least 0.25 s and
+at most 1 s. The other lengths show the effect of this rule.
 """
 
 import argparse
@@ -24,7 +24,7 @@ RATIOS = {"kr300": (256.86, 267.43, 252.33), "tx40": (32.0, 32.0, 45.0, -48.0)}
 
 
 def table(path: Path) -> dict[str, np.ndarray]:
-    """Columns of a file by their headers."""
+    """Return the columns of a file by their headers."""
     opened: Any = gzip.open if path.suffix == ".gz" else open
     with opened(path, "rt") as file:
         names = file.readline().strip().split(",")
@@ -33,14 +33,14 @@ def table(path: Path) -> dict[str, np.ndarray]:
 
 
 def joint(gravity: str, kind: Any = "revolute") -> jid.Joint:
-    """What is known before the identification."""
+    """Return the facts that are known before the identification."""
     return jid.Joint(
         kind=kind, torque_offset=True, model=jid.Model.parse(f"coulomb_viscous:gravity={gravity}")
     )
 
 
 def logs(data: Path) -> Iterator[tuple[str, jid.Recording, jid.Joint]]:
-    """The recordings with their joints."""
+    """Yield the recordings with their names and joints."""
     known = table(data / "kr300" / "kr300_A.csv.gz")
     for number, ratio in enumerate(RATIOS["kr300"], 1):
         run = jid.Recording(
@@ -82,7 +82,7 @@ def logs(data: Path) -> Iterator[tuple[str, jid.Recording, jid.Joint]]:
 
 
 def scatter(jacobian: np.ndarray, residual: np.ndarray, length: int) -> np.ndarray:
-    """Half of the range of the middle 68 % of draws of moving blocks."""
+    """Return half of the range of the middle 68 % of the draws of moving blocks."""
     rng = np.random.default_rng(0)
     size = np.linalg.norm(jacobian, axis=0)
     found = []

@@ -364,7 +364,7 @@ CASES = (
     Case(name="command is cut for long", stop="saturated_samples", script=_set("stage_gain", 0.2),
          limits={"torque_difference": 1e3, **_WIDE}, says="21 times", detected=100 * PERIOD),
     Case(name="joint would leave its window", stop="position", script=_controller(lambda _: 150.0), limits=_WIDE,
-         says="if it were braked now", detected=300 * PERIOD),
+         says="even immediate braking would stop", detected=300 * PERIOD),
     Case(name="command beyond what the joint needs", stop="torque_envelope", script=_set("stage_gain", 0.3),
          limits={"torque_envelope": 1.0, "torque_difference": 1e3, "saturated_samples": 1000, **_WIDE},
          says="is commanded, but", detected=60 * PERIOD),
@@ -382,7 +382,7 @@ CASES = (
     Case(name="sensor's reading is not finite", stop="sensor", script=_set("stuck_voltage", math.nan),
          drive=_SENSOR_AT_DRIVE, says="finite", detected=6 * PERIOD),
     Case(name="sensor is not answered", stop="sensor", script=_deaf_to_the_sensor, detected=25 * PERIOD,
-         drive=_SENSOR_AT_DRIVE, says="without an answer"),
+         drive=_SENSOR_AT_DRIVE, says="did not answer"),
     Case(name="host is late", stop="missed_deadlines", script=_host_works(0.8e-3), says="6 cycles",
          detected=10 * PERIOD),
     # The drive.

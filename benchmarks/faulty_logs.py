@@ -81,11 +81,19 @@ OUTCOMES: tuple[Outcome, ...] = get_args(Outcome)
 
 PART = Part(
     title="Foreign logs",
-    asked="Is a text log with one random fault read right, or refused for the right cause? `jointid identify` with "
-    "the options that the user would know, seed {seed}.",
-    header=("kind", "logs", *OUTCOMES),
-    reading="All right: {right}. Right, or the right cause in the first finding: {share:.1f} %. Wrong and usable: "
-    "{misled}.",
+    asked="Does `jointid identify` give right values for a text log with one random fault, or name the fault? The "
+    "calls have only options that the user of the log would know; seed {seed}.",
+    header=(
+        "fault (name in `faulty_logs.py`)",
+        "logs",
+        "right values",
+        "fault named first",
+        "fault named later",
+        "other cause named",
+        "wrong values and usable",
+    ),
+    reading="Faults with right values in all logs: {right}. Logs with right values, or with the fault in the first "
+    "finding: {share:.1f} %. Logs with wrong values and a usable verdict: {misled}.",
 )
 
 

@@ -1,10 +1,10 @@
-"""The sensor's gain by instruments, by the sensor's and by the torque's residual, where each can fail.
+"""The sensor's gain from instrumental variables, the sensor's residual and the torque's residual, where each can fail.
 
     python benchmarks/gain_study.py [runs [word in the condition's name]]
 
-Prints one row a condition and residual: relative error of the gain [%] as mean, standard deviation and worst, the least
-standard deviation that the sensor's noise allows, share of 95 % intervals that hold the truth, and the mean error of
-Coulomb and viscous friction.
+Prints one row per condition and residual. A row has the relative error of the gain [%] (mean, standard deviation and
+largest), the least standard deviation that the sensor's noise allows, the coverage of the 95 % intervals, and the mean
+errors of Coulomb and viscous friction.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ HELD = Law(inertia=2.5, stiffness=80.0, feedback=1.5)
 
 @dataclass(frozen=True, kw_only=True)
 class Condition:
-    """A joint, its log and its controller; the model that is identified."""
+    """A joint, its log, its controller, and the model to identify."""
 
     log: Log = NOISE
     plant: Plant = field(default_factory=Plant)
@@ -42,7 +42,7 @@ CONDITIONS = {
     "noise 0.5 N·m": Condition(),
     "noise 3 N·m": Condition(log=Log(sensor_noise=3.0)),
     "noise 5 N·m": Condition(log=Log(sensor_noise=5.0)),
-    "100,000 counts a turn": Condition(log=Log(sensor_noise=0.5, counts=1e5, velocity=0.0)),
+    "100,000 counts per revolution": Condition(log=Log(sensor_noise=0.5, counts=1e5, velocity=0.0)),
     "viscous −10 %": Condition(plant=Plant(viscous_drift=-0.1)),
     "viscous −30 %": Condition(plant=Plant(viscous_drift=-0.3)),
     "viscous −30 %, noise 5 N·m": Condition(
@@ -63,9 +63,9 @@ CONDITIONS = {
 
 
 def least_deviation(recording: jid.Recording, noise: float) -> float:
-    """Cramér-Rao limit of the gain's relative error [%]: white noise on the reading, all else exact.
+    """Return the Cramér-Rao bound of the gain's relative error [%]: white noise on the reading, other signals exact.
 
-    The gain is the slope of the load over the reading, beside the offset and the columns of friction.
+    The gain is the slope of the load over the reading, next to the offset and the columns of friction.
     """
     plant = recording.metadata["plant"]
     velocity = recording.velocity
@@ -79,7 +79,7 @@ def least_deviation(recording: jid.Recording, noise: float) -> float:
 
 
 def main(runs: int, word: str = "") -> None:
-    """Print the table of the conditions with the word in their name."""
+    """Print the table of the conditions with this word in their names."""
     rng = np.random.default_rng(11)
     joint = jid.thesis_joint()
     motion = thesis(np.radians(rng.uniform(50.0, 70.0, runs)))

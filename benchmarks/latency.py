@@ -48,9 +48,9 @@ found["`Estimate.from_json`"] = least(lambda: Estimate.from_json(text), 10)
 found["`identify` with `auto`"] = least(lambda: identify(recording, model="auto"), 5)
 found["`bootstrap(1000)`"] = least(lambda: estimate.bootstrap(1000), 2)
 two = ["coulomb_viscous", "stribeck"]
-found["`compare_models` of two"] = least(lambda: compare_models(recording, joint, models=two), 8)
+found["`compare_models` of two models"] = least(lambda: compare_models(recording, joint, models=two), 8)
 five = [*two, "coulomb_viscous:gravity=free", "stribeck:gravity=free", "stribeck_general"]
-found["`compare_models` of five"] = least(lambda: compare_models(recording, joint, models=five), 1)
+found["`compare_models` of five models"] = least(lambda: compare_models(recording, joint, models=five), 1)
 found["others"] = sorted({name for name in ("scipy", "matplotlib") if name in sys.modules})
 import pandas
 for file in (path, path.with_suffix(".csv.gz")):
@@ -64,11 +64,11 @@ print(json.dumps(found))
 
 PART = Part(
     title="Latency",
-    asked="How long does a user wait? CPU time of the quickest of {runs} runs, all programs in turn, and its ratio to "
-    "another program; only the ratios are comparable between machines.",
-    header=("program or call", "CPU [ms]", "against", "ratio"),
-    reading="*Warm*: the quickest of 20 calls. `run.csv` has 12,000 rows of five columns, 0.6 MB. *Five*: two models, "
-    "both with free gravity, and `stribeck_general`. SciPy and matplotlib are not imported.",
+    asked="How long does a user wait? The table has the shortest CPU time of {runs} runs, and its ratio to the time "
+    "of another program or call. All programs run in turn. Only the ratios are comparable between machines.",
+    header=("program or call", "CPU time [ms]", "compared with", "ratio of CPU times"),
+    reading="*Warm*: the shortest of 20 calls. `run.csv` has 12,000 rows of five columns, 0.6 MB. *Five models*: two "
+    "models, each without and with free gravity, and `stribeck_general`. SciPy and matplotlib are not imported.",
 )
 
 
@@ -96,8 +96,8 @@ _ROWS = (
     Row(what="`Estimate.from_json`"),
     Row(what="`identify` with `auto`", against="warm `identify()`"),
     Row(what="`bootstrap(1000)`", against="warm `identify()`"),
-    Row(what="`compare_models` of two", against="warm `identify()`"),
-    Row(what="`compare_models` of five", against="warm `identify()`"),
+    Row(what="`compare_models` of two models", against="warm `identify()`"),
+    Row(what="`compare_models` of five models", against="warm `identify()`"),
 )
 
 

@@ -1,9 +1,9 @@
-"""Late and lost frames, a host whose clock drifts and wakes late: what they do to the estimates.
+"""Effects of late frames, lost frames, a drifting clock and a late host on the estimates.
 
     python benchmarks/lateness_study.py --runs 10
 
-Each run is a session of 12 s on the emulated drive: .3 % of its cycles have a frame that is 1.5 ms late, .1 % one that
-is lost, of any kind. Its estimate is compared with that of the same run undisturbed.
+Each run is a session of 12 s on the emulated drive. In 0.3 % of the cycles a frame of any kind is 1.5 ms late, and in
+0.1 % a frame is lost. The estimate is compared with the estimate of the same run without disturbances.
 """
 
 from __future__ import annotations
@@ -26,19 +26,25 @@ from jointid.hardware.session.limits import SessionLimits
 from jointid.hardware.session.session import Session, SessionOptions, SessionStoppedError
 from jointid.simulation.stepped import stepped_joint
 
-PERIOD, DURATION, BEGIN = 2e-3, 12.0, 1.0  # [s]; from BEGIN on the bus's clock frames are disturbed
+PERIOD, DURATION, BEGIN = (
+    2e-3,
+    12.0,
+    1.0,
+)  # [s]; frames are disturbed from BEGIN on, in the time of the bus
 LATE, LOST, DELAY = 0.003, 0.001, 1.5e-3
 FRAMES = (0x4FF, 0x1C0, 0x080, 0x37F, 0x701, 0x2FF)
-CLOSE = 0.01  # relative; or two standard errors
+CLOSE = (
+    0.01  # largest relative difference of a close value; two standard errors also count as close
+)
 QUIET = {
     "clock drifts by 100 ppm": {"clock_drift": 1e-4},
-    "host wakes up to .3 ms late": {"jitter": 3e-4},
+    "host wakes up to 0.3 ms late": {"jitter": 3e-4},
     "both": {"clock_drift": 1e-4, "jitter": 3e-4},
 }
 
 
 def faults(seed: int) -> tuple[BusFault, ...]:
-    """Frames that are late or lost, each of one kind and in one cycle."""
+    """Return faults of single frames: each is late or lost, of one kind, in one cycle."""
     drawn = np.random.default_rng(seed)
     made = []
     for cycle in range(round((DURATION + 1.0) / PERIOD)):
@@ -59,7 +65,7 @@ def faults(seed: int) -> tuple[BusFault, ...]:
 
 
 def session(number: int, **wire: Any) -> jid.Recording:
-    """One run on an emulated bus."""
+    """Return the recording of one run on an emulated bus."""
     true = joint()
     moved = stepped_joint(true, sensors=jid.Sensors(torque_noise=0.5), period=PERIOD, seed=number)
     elmo = EmulatedElmo(moved)
@@ -76,12 +82,12 @@ def session(number: int, **wire: Any) -> jid.Recording:
 
 
 def estimate(recording: jid.Recording) -> jid.Estimate:
-    """By the direct search: it takes a tenth of a second."""
+    """Identify with the separable search, which takes 0.1 s."""
     return jid.identify(recording, joint(), search="separable")
 
 
 def compared(expected: jid.Estimate, found: jid.Estimate) -> tuple[float, str, bool]:
-    """Return the largest relative difference, whose it is, and whether all are close."""
+    """Return the largest relative difference, its parameter's name, and whether all values are close."""
     worst, name, close = 0.0, "", True
     for each, parameter in expected.parameters.items():
         if parameter.stderr is None:
@@ -95,7 +101,7 @@ def compared(expected: jid.Estimate, found: jid.Estimate) -> tuple[float, str, b
 
 
 def main() -> int:
-    """Print the tables; returns 1 when a run was stopped or an estimate is not close."""
+    """Print the tables; return 1 if a run was stopped or an estimate is not close."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=10)
     runs = parser.parse_args().runs

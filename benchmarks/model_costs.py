@@ -39,14 +39,16 @@ def measure(contest: Contest) -> list[Record]:
     calls = {
         PLAIN: call("stribeck"),
         "`stribeck_general`": call(GENERAL),
-        'the same, `search="ga"`': call(GENERAL, "ga"),
-        "the same, wide bounds": call(GENERAL, parameters=WIDE),
-        "the same, exponent fixed at 2": call(GENERAL, parameters={"stribeck_exponent": 2.0}),
+        '`stribeck_general`, `search="ga"`': call(GENERAL, "ga"),
+        "`stribeck_general`, wide bounds": call(GENERAL, parameters=WIDE),
+        "`stribeck_general`, exponent fixed at 2": call(
+            GENERAL, parameters={"stribeck_exponent": 2.0}
+        ),
     }
     for model in ("stribeck", GENERAL):
         problem = given(model, (contest.recording,), contest.joint, model)
         middle = 0.5 * (problem.domain.lower + problem.domain.upper)
-        calls[f"a direct candidate, `{model}`, 100 times"] = _hundred(problem.direct, middle)
+        calls[f"100 candidates of the direct penalty, `{model}`"] = _hundred(problem.direct, middle)
     spent = dict.fromkeys(calls, float("inf"))
     for _ in range(REPEATS):
         for name, each in calls.items():

@@ -1,11 +1,11 @@
-"""What the next motion does to the errors of an estimate: sequential design, over many seeds.
+"""Effect of a designed second motion on the errors of an estimate: sequential design, over many seeds.
 
     python benchmarks/next_motion_study.py [--seeds 100] [--evaluations 2000] [--workers 2] [--output FILE]
         [--file poorly_excited.csv.gz] [--only WORD]
 
-A joint is recorded for 6 s by ±20°, which tells little of the sensor's gain. Its estimate designs 6 s more, or the
-same motion is recorded again. Errors in % of the true values; the designed motion is driven by a controller that
-believes the first estimate.
+The first recording of a joint has 6 s of motion by ±20°. It contains little information about the sensor's gain. The
+second recording has 6 s of a motion designed from the first estimate, or the same motion again. Errors are in % of the
+true values. In the designed motion, the controller uses the values of the first estimate.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ WRONG |= {"sensor_gain": 1.0, "sensor_offset": 0.0}
 
 @dataclass(frozen=True, kw_only=True)
 class Situation:
-    """How the link hangs, how noisy the sensor is, and what the first controller believes."""
+    """Angle of the link, noise of the sensor, and values that the first controller uses."""
 
     angle: float = 0.0
     noise: float = 0.2
@@ -45,13 +45,13 @@ class Situation:
     def run(
         self, values: dict[str, float], controller: Any, trajectory: jid.Trajectory, seed: int
     ) -> jid.Recording:
-        """One recording of the joint."""
+        """Return one recording of the joint."""
         sensors = jid.Sensors(torque_noise=self.noise)
         joint = self.joint().with_parameters(values)
         return jid.simulate(joint, controller, trajectory, sensors=sensors, seed=seed)
 
     def joint(self) -> jid.Joint:
-        """The thesis's joint, with its link at this angle."""
+        """Return the thesis's joint, with its link at this angle."""
         joint = jid.thesis_joint()
         link = jid.Link(
             mass=3.0, centre_of_mass=0.25, angle=self.angle, inertia=0.25, gravity=9.817
@@ -59,7 +59,7 @@ class Situation:
         return joint.replace(link=link)
 
     def law(self, values: dict[str, float]) -> jid.AdaptiveRobust:
-        """The controller that believes these values."""
+        """Return the controller that uses these values."""
         believed = jid.control_estimates(self.joint().with_parameters(values))
         return jid.AdaptiveRobust(**believed, friction_velocity="reference")
 
@@ -82,7 +82,7 @@ SITUATIONS = {
 
 
 def errors(estimate: jid.Estimate) -> dict[str, float]:
-    """Relative errors [%]; not a number where the model lacks the parameter."""
+    """Return the relative errors [%]; NaN if the model lacks the parameter."""
     found = estimate.parameters
     return {
         name: 100.0 * (found[name].value / true - 1.0) if name in found else math.nan
@@ -91,7 +91,7 @@ def errors(estimate: jid.Estimate) -> dict[str, float]:
 
 
 def trial(situation: Situation, evaluations: int, seed: int) -> dict[str, dict[str, float]]:
-    """Errors of one first recording, of it with the same again, and with the designed motion; and the expected ones."""
+    """Return errors after one recording, with the same motion again, with the designed motion, and expected errors."""
     joint, law = situation.joint(), situation.law(situation.believes)
     first = situation.run(TRUE, law, situation.first, 2 * seed)
     estimate = jid.identify(first, joint, model="stribeck")
@@ -113,7 +113,7 @@ def trial(situation: Situation, evaluations: int, seed: int) -> dict[str, dict[s
 
 
 def after_a_file(path: Path, seeds: int, evaluations: int) -> Iterator[str]:
-    """One design after a recording of the thesis's joint, and the errors of both over many second recordings."""
+    """Yield the table of one design after a file's recording, with the errors over many second recordings."""
     joint, situation = jid.thesis_joint(), Situation()
     first = jid.load(path)
     estimate = jid.identify(first, joint)
@@ -137,7 +137,7 @@ def after_a_file(path: Path, seeds: int, evaluations: int) -> Iterator[str]:
 
 
 def table(name: str, trials: list[dict[str, dict[str, float]]]) -> Iterator[str]:
-    """One row a parameter: root mean square of the errors, the expected error; and how often all are below 1 %."""
+    """Yield one row per parameter (RMS and expected errors), then the number of seeds with all errors below 1 %."""
     yield f"\n### {name}\n\n| parameter | first | same again | designed | expected |\n|---|---|---|---|---|"
     for parameter in TRUE:
         cells = []
@@ -154,13 +154,13 @@ def table(name: str, trials: list[dict[str, dict[str, float]]]) -> Iterator[str]
 
 
 def main() -> None:
-    """Print the tables, and write them where asked."""
+    """Print the tables, and write them to the output file if there is one."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=100)
     parser.add_argument("--evaluations", type=int, default=2000)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--file", type=Path, help="a recording of the thesis's joint to go on from")
-    parser.add_argument("--only", default="", help="a word in the situation's name")
+    parser.add_argument("--file", type=Path, help="first recording of the thesis's joint")
+    parser.add_argument("--only", default="", help="only situations with this word in their names")
     parser.add_argument("--output", type=Path)
     arguments = parser.parse_args()
     lines: list[str] = []

@@ -1,7 +1,8 @@
-"""`make study`, third part: the thesis's presets and others on `well_excited`. Markdown.
+"""`make study`, third part: presets of the thesis and other settings on `well_excited`. Prints a Markdown table.
 
-Mean absolute error of each parameter over the seeds, and the number of seeds with all six within 5 % of the truth (the
-acceptance of the thesis). A hundred seeds at 200 x 1500, 30 million candidates, take some seconds a row.
+A row has the mean absolute error of each parameter over the seeds. It also has the number of seeds with all six
+parameters within 5 % of the truth (the criterion of the thesis). A row of 100 seeds with 200 × 1500 candidates takes
+some seconds.
 """
 
 import argparse
@@ -23,7 +24,7 @@ TRUTH = {
 
 
 def rows() -> dict[str, tuple[Method, jid.GaOptions]]:
-    """Method and options by name."""
+    """Return method and options by the name of the row."""
     text, code = jid.GaOptions.thesis(), jid.GaOptions.thesis_code()
     plain = jid.GaOptions(population=200, generations=1500, polish=False)
     binary = plain.replace(coding="binary", bit_crossover="two_point")
@@ -35,14 +36,14 @@ def rows() -> dict[str, tuple[Method, jid.GaOptions]]:
         "code-100": ("ga", code.replace(population=100, generations=1000)),
         "code-200": ("ga", code_200),
         "gene-200": ("ga", text_200.replace(mutation_unit="gene")),
-        "real-200": ("ga", plain),  # with the settings of binary-200
+        "real-200": ("ga", plain),  # same settings as binary-200, except the coding
         "binary-200": ("ga", binary),
         "random-200": ("random", plain),
     }
 
 
 def main(names: list[str], seeds: int) -> None:
-    """Run and print."""
+    """Run the searches and print the table."""
     recording = jid.load(WELL_EXCITED)
     print("| search | all within 5 % | " + " | ".join(TRUTH) + " |")
     print("|---|---|" + "---|" * len(TRUTH))

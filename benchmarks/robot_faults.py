@@ -20,20 +20,20 @@ import jointid as jid
 
 PART = Part(
     title="Robot logs with one fault",
-    asked="Is a faulty log of an arm refused or doubted, and the fault named? Random serial arms of three to seven "
-    "joints, 20 s; the plain call with the true URDF.",
+    asked="Does `identify` refuse or doubt a faulty log of an arm, and does a finding name the fault? Random serial "
+    "arms of three to seven joints, 20 s. The call has the true URDF and no options.",
     header=(
         "fault",
         "arms",
-        "usable and wrong",
-        "refused",
-        "with care",
-        "usable and right",
-        "named",
-        "seconds",
+        "usable, wrong values",
+        "refused or not usable",
+        "usable with care",
+        "usable, right values",
+        "fault named",
+        "CPU time, median [s]",
     ),
-    reading="*Wrong*: usable, though a joint's friction is more than 5 % off and outside its 95 % interval. Usable and "
-    "wrong, and clean ones that are doubted: {bad}.",
+    reading="Values are *wrong* if the friction of a joint has an error above 5 % and its 95 % interval does not "
+    "contain the truth. Usable logs with wrong values, and clean logs without the verdict *usable*: {bad}.",
 )
 _WRONG = 0.05  # of a value, outside its interval
 _SHOWN = 14  # number of cases that are listed one by one
@@ -146,11 +146,11 @@ def bad(found: Sequence[Outcome]) -> str:
 
 def line(each: Outcome) -> str:
     """Return the line of one case."""
-    codes = ", ".join(dict.fromkeys(each.codes)) or "no warning"
+    codes = ", ".join(dict.fromkeys(each.codes)) or "none"
     detail = f" ({each.detail})" if each.detail else ""
     return (
-        f"{each.fault} {each.seed}{detail}: {each.level}, "
-        f"outside its interval by {100.0 * each.worst:.1f} % at most; {codes}"
+        f"{each.fault} {each.seed}{detail}: {each.level} (largest error with the truth outside the interval "
+        f"{100.0 * each.worst:.1f} %, findings: {codes})"
     )
 
 

@@ -1,4 +1,4 @@
-"""Whole arms: TX40 against the classical method, and a simulated arm of seven joints.
+"""Whole arms: TX40 compared with the classical method, and simulated arms of seven joints.
 
 python benchmarks/robot_study.py [--runs 20] [--log FOLDER OF tx40.csv.gz] [--only SECTION] [--write]
 """
@@ -18,7 +18,7 @@ Section = tuple[Part, Callable[[], Iterable[Sequence[object]]], int]
 
 
 def sections(runs: int, hour: bool, log: Path) -> dict[str, Section]:
-    """Part, rows and number of arms of each section."""
+    """Return part, rows and number of arms of each section."""
     few, some = min(runs, 3), min(runs, 10)
     tables: dict[str, Section] = {
         "runs": (seven_tables.ARMS, lambda: seven_tables.accuracy(range(runs)), runs),
@@ -43,7 +43,7 @@ def sections(runs: int, hour: bool, log: Path) -> dict[str, Section]:
 def main() -> None:
     """Run the sections and publish their tables."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--runs", type=int, default=20, help="simulated arms")
+    parser.add_argument("--runs", type=int, default=20, help="number of simulated arms")
     parser.add_argument("--hour", action="store_true", help="time an hour's recording, too")
     parser.add_argument(
         "--log", type=Path, default=_LOG, help="folder of tx40.csv.gz and tx40.urdf"

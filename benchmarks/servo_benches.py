@@ -16,16 +16,17 @@ FIRST_SEED = 1000
 
 BENCHES = Part(
     title="Servos without a torque signal",
-    asked="How accurate is a servo's identification on {benches} simulated benches, each with a servo of its own drawn "
-    "within 30 % of the nominal one? 16 runs of 6 s, four gains, four motions.",
+    asked="How accurate is the identification of a servo on {benches} simulated benches? The values of each bench's "
+    "servo are drawn within 30 % of the nominal values. Each bench has 16 runs of 6 s, with four gains and four "
+    "motions.",
     header=(
         "parameter",
         "mean error [%]",
         "largest error [%]",
-        "95 % intervals with the truth [%]",
-        "half an interval, mean [%]",
+        "coverage of the 95 % intervals [%]",
+        "half of the 95 % interval, mean [%]",
     ),
-    reading="Benches with a finding other than a value on its bound: {warned}.",
+    reading="Benches with a finding other than `at_bound`: {warned}.",
 )
 SHOWN = ("torque_per_voltage", "load_friction", "inertia", "torque_constant")
 
@@ -75,13 +76,19 @@ def bench_table(seeds: Sequence[int]) -> tuple[list[list[str]], str]:
 
 _STRIBECK = ("gaussian", 1.8 * COULOMB, 1.8 * COULOMB, (1.0 / 0.3**2,))
 BROKEN: dict[str, tuple[Bench, dict[str, Any]]] = {
-    "nothing": (Bench(), {}),
-    "the supply sags by 0.75 Ω, and is logged": (Bench(sag=0.75), {}),
-    "the supply sags by 0.15 Ω, but 7.4 V are stated": (Bench(), {"supply": 7.4}),
-    "the supply sags by 0.75 Ω, but 7.4 V are stated": (Bench(sag=0.75), {"supply": 7.4}),
+    "none": (Bench(), {}),
+    "the supply has an internal resistance of 0.75 Ω; its voltage is logged": (Bench(sag=0.75), {}),
+    "the supply has an internal resistance of 0.15 Ω; constant 7.4 V are stated": (
+        Bench(),
+        {"supply": 7.4},
+    ),
+    "the supply has an internal resistance of 0.75 Ω; constant 7.4 V are stated": (
+        Bench(sag=0.75),
+        {"supply": 7.4},
+    ),
     "the duty is read 4.5 ms after the position": (Bench(row=0.0045), {}),
-    "the loop answers 5 ms late, which is not stated": (Bench(delay=0.005), {}),
-    "static friction 1.8 times Coulomb, Stribeck velocity 0.3 rad/s": (
+    "the position loop acts 5 ms late, and no delay is stated": (Bench(delay=0.005), {}),
+    "static friction 1.8 times Coulomb friction, Stribeck velocity 0.3 rad/s": (
         Bench(friction=(_STRIBECK,)),
         {},
     ),
@@ -93,9 +100,14 @@ BROKEN: dict[str, tuple[Bench, dict[str, Any]]] = {
 
 BROKEN_BENCHES = Part(
     title="Servos where an assumption does not hold",
-    asked="What does something cost that the model or the joint file lacks? {benches} benches per row: mean errors "
-    "[%], and how many of these parameters' intervals contain the truth.",
-    header=("not as assumed", *SHOWN, "intervals with the truth [%]", "findings"),
+    asked="How large are the errors if the bench differs from the model or the joint file? {benches} benches per row; "
+    "mean error of each parameter [%].",
+    header=(
+        "difference between bench and model or joint file",
+        *SHOWN,
+        "coverage of the 95 % intervals of these parameters [%]",
+        "findings: number of benches",
+    ),
 )
 
 

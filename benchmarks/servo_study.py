@@ -1,10 +1,10 @@
-"""How well a servo without a torque signal is identified: simulated benches with known truth, and the XL330's logs.
+"""Accuracy for servos without a torque signal: simulated benches with known truth, and the logs of an XL330.
 
     python benchmarks/servo_study.py [--only logs] [--write]
 
-The benches are `tests/simulated_servo.py`: their truth is drawn anew for each. The logs are Rhoban BAM's (Apache-2.0),
-in tests/data. The peer is CMA-ES on rollouts of the same model, on the same training runs, with the rollouts of the
-core and pycma (dependency group `bench`).
+`tests/simulated_servo.py` simulates the benches; each bench has new random parameters. The logs come from Rhoban BAM
+(Apache-2.0) and are in tests/data. The peer is CMA-ES (pycma, dependency group `bench`) on rollouts of the same model
+for the same training runs. The core computes these rollouts.
 """
 
 from __future__ import annotations

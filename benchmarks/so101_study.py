@@ -1,10 +1,10 @@
-"""An SO-101 arm of hobby servos identified from wanted positions, and judged by rolling out another motion.
+"""Identification of an SO-101 arm of hobby servos from wanted positions, tested by a rollout of another motion.
 
     python benchmarks/so101_study.py FOLDER
 
-FOLDER holds frequency_sweep_*.csv.gz, coupled_joints_*.csv.gz (isaac-sim2real/sage, Apache-2.0), so101_new_calib.urdf
-and so101_no_meshes.xml (TheRobotStudio/SO-ARM100, Apache-2.0). The sweep is identified, the other motion judged.
-The gain of all servos is the one that the weight of three links asks for. MuJoCo rolls out, not the product.
+FOLDER has frequency_sweep_*.csv.gz, coupled_joints_*.csv.gz (isaac-sim2real/sage, Apache-2.0), so101_new_calib.urdf
+and so101_no_meshes.xml (TheRobotStudio/SO-ARM100, Apache-2.0). The sweep is identified, the other motion is simulated.
+All servos have the same gain: the gain that agrees with the weight of three links. MuJoCo simulates the motion.
 """
 
 from __future__ import annotations
@@ -24,15 +24,15 @@ import jointid as jid
 Array = NDArray[np.float64]
 
 NAMES = ("shoulder_pan", "shoulder_lift", "elbow_flex", "wrist_flex", "wrist_roll", "gripper")
-WEIGHED = NAMES[1:4]  # joints that gravity loads
+WEIGHED = NAMES[1:4]  # joints with a gravity load
 # Published pairs of armature [kg·m²] and dry friction [N·m] of shoulder_lift.
 PUBLISHED = ((0.147, 0.0), (0.044, 0.318), (0.028, 0.345), (0.02, 0.0))
 _STEP = 5e-4  # [s]
-_SETTLED = 2.0  # [s], left out of errors
+_SETTLED = 2.0  # [s] at the beginning, left out of the errors
 
 
 def recording(folder: Path, name: str) -> jid.RobotRecording:
-    """Positions and wanted positions of a motion."""
+    """Return positions and wanted positions of a motion."""
 
     def rows(kind: str) -> tuple[Array, Array]:
         with gzip.open(folder / f"{name}_{kind}.csv.gz", "rt", encoding="utf-8") as file:
@@ -50,7 +50,7 @@ def recording(folder: Path, name: str) -> jid.RobotRecording:
 def identified(
     folder: Path, log: jid.RobotRecording
 ) -> tuple[float, float, list[jid.RobotEstimate]]:
-    """The gain of all servos, how far those of single joints are from it, and estimates with it, less and more."""
+    """Return the common gain, the deviation of single gains, and estimates with this, a lower and a higher gain."""
     urdf = folder / "so101_new_calib.urdf"
     free = jid.Robot.from_urdf(urdf, drive={"kp": "free", "kd": "free"})
     found = jid.identify(log, free)
@@ -74,7 +74,7 @@ def rolled_out(
     gain: float,
     values: dict[str, Array],
 ) -> Array:
-    """Positions of MuJoCo's arm that follows the wanted positions, at the rows; the real arm's beginning."""
+    """Return positions of MuJoCo's arm at the rows; it starts as the real arm and follows the wanted positions."""
     import mujoco  # type: ignore[import-untyped]
 
     model = mujoco.MjModel.from_xml_path(str(folder / "so101_no_meshes.xml"))
@@ -108,13 +108,13 @@ def rolled_out(
 
 
 def errors(log: jid.RobotRecording, position: Array) -> Array:
-    """Root mean square of each joint's position error [rad]."""
+    """Return the RMS position error of each joint [rad]."""
     later = log.time > _SETTLED
     return np.asarray(np.sqrt(np.mean((position - log.position)[later] ** 2, axis=0)))
 
 
 def values_of(found: jid.RobotEstimate) -> dict[str, Array]:
-    """What a rollout needs, one value a joint."""
+    """Return the values that a rollout needs, one value per joint."""
     late: Any = found.settings["shift"].get("reference", 0.0)
     each = late if isinstance(late, dict) else dict.fromkeys(NAMES, late)
 
@@ -139,7 +139,7 @@ def main() -> None:
         texts = []
         for key in ("rotor_inertia", "coulomb", "viscous"):
             p = joint.parameters[key]
-            # The gain's own uncertainty comes on top of the interval.
+            # The interval also includes the uncertainty of the common gain.
             every = [p, *(each.joints[name].parameters[key] for each in others)]
             ends = [end for each in every for end in each.interval or (each.value,)]
             low, high = max(min(ends), 0.0), max(*ends, p.value)

@@ -1,9 +1,9 @@
 """Velocity from a coarse encoder: joints without a torque sensor, simulated independently, in closed loop.
 
-`python benchmarks/velocity_study.py [--seeds 4] [--differences]`: counts a motor turn × control period × five
-motions × two laws × friction compensated at the measured and at the reference velocity, 120 runs a seed. Prints a
-table: median, 90th percentile and worst error, coverage of the 95 % intervals, and runs in which a parameter is
-more than 5 % off that no finding names. `--differences` uses central differences everywhere, for comparison.
+`python benchmarks/velocity_study.py [--seeds 4] [--differences]`: 120 runs per seed, from counts per motor revolution ×
+control period × five motions × two laws × friction compensated at the measured or the reference velocity. Prints a
+table with median, 90th percentile and largest error, and coverage of the 95 % intervals. It also counts runs in which a
+parameter has an error above 5 % and no finding names it. `--differences` uses central differences for all runs.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ DURATION = 10.0
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """Counts a motor turn, and ticks a command and a sample."""
+    """Encoder counts per motor revolution, and milliseconds between commands and between samples."""
 
     counts: int
     every: int
 
 
 def motions(rng: np.random.Generator) -> Iterator[Motion]:
-    """Five motions, each a little larger or smaller with every seed."""
+    """Yield five motions; the seed varies their size by up to 15 %."""
     size = float(rng.uniform(0.85, 1.15))
     yield thesis([np.radians(60.0) * size])
     yield thesis([np.radians(20.0) * size])
@@ -47,12 +47,12 @@ def motions(rng: np.random.Generator) -> Iterator[Motion]:
 
 
 def cases() -> list[Case]:
-    """The grid of encoders and periods."""
+    """Return the grid of encoders and periods."""
     return [Case(counts=counts, every=every) for counts in (500, 2000, 8000) for every in (1, 2)]
 
 
 def runs_of(case: Case, seed: int) -> list[jid.Recording]:
-    """Twenty runs: the motions under each law and compensation."""
+    """Return 20 runs: each motion under each law and compensation."""
     rng = np.random.default_rng(seed)
     benches = []
     for motion in motions(rng):

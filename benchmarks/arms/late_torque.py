@@ -18,14 +18,14 @@ DELAYS = (0.0, 1e-3, 3e-3, 10e-3)  # [s]
 NEAR = 3e-4  # [s]
 PART = Part(
     title="Simulated robots: a late torque",
-    asked="Is a torque that is late by the same time in all joints found? {runs} arms, with inertia urdf and free; "
-    "largest errors.",
+    asked="Does `identify_robot` find a torque that is late by the same time in all joints? {runs} arms, each with "
+    '`inertia="urdf"` and with `inertia="free"`.',
     header=(
-        "late by [ms]",
-        "delay named",
-        "within 0.3 ms",
-        "error of the delay [ms]",
-        "worst friction [%]",
+        "true delay [ms]",
+        "calls that report a delay",
+        "reported delays within 0.3 ms",
+        "largest error of the delay [ms]",
+        "largest error of the friction [%]",
         "warnings",
     ),
 )

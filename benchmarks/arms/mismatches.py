@@ -110,15 +110,16 @@ def thinned(every: int) -> Callable[[jid.RobotRecording], jid.RobotRecording]:
 
 MISMATCHES = (
     Mismatch(name="nothing"),
-    Mismatch(name="stamps 0.2 ms late in the mean", sensors=Sensors(stamp_lateness=2e-4)),
-    Mismatch(name="stamps 0.5 ms late in the mean", sensors=Sensors(stamp_lateness=5e-4)),
-    Mismatch(name="16,384 counts/rev", sensors=Sensors(counts=2.0**14)),
+    Mismatch(name="time stamps 0.2 ms late in the mean", sensors=Sensors(stamp_lateness=2e-4)),
+    Mismatch(name="time stamps 0.5 ms late in the mean", sensors=Sensors(stamp_lateness=5e-4)),
+    Mismatch(name="encoder with 16,384 counts/rev", sensors=Sensors(counts=2.0**14)),
     Mismatch(name="torque noise 3 %", sensors=Sensors(torque_noise=0.03)),
     Mismatch(name="torque 3 ms late", recording=late("torque", 3e-3)),
     Mismatch(name="torque 10 ms late", recording=late("torque", 10e-3)),
-    Mismatch(name="200 Hz", recording=thinned(5)),
+    Mismatch(name="sampled at 200 Hz", recording=thinned(5)),
     Mismatch(
-        name="zero of joint 2 off by 5°", recording=scaled(("position",), 2, shift=np.radians(5.0))
+        name="zero position of joint 2 wrong by 5°",
+        recording=scaled(("position",), 2, shift=np.radians(5.0)),
     ),
     Mismatch(name="torque of joint 5 with the wrong sign", recording=scaled(("torque",), 5, -1.0)),
     Mismatch(
@@ -127,7 +128,7 @@ MISMATCHES = (
     ),
     Mismatch(name="torque of joint 4 10 % too high", recording=scaled(("torque",), 4, 1.1)),
     Mismatch(name="1 kg at the flange", arm=of_body(7, 1.0, (0.02, 0.0, 0.15))),
-    Mismatch(name="centre of mass of link 3 off by 2 cm", arm=moved_centre(3, (0.0, 0.02, 0.0))),
+    Mismatch(name="center of mass of link 3 wrong by 2 cm", arm=moved_centre(3, (0.0, 0.02, 0.0))),
     Mismatch(name="base tilted by 10°", arm=tilted(10.0)),
     Mismatch(name="link 2 heavier by 20 %", arm=lambda arm: arm.with_link_scaled(2, 1.2)),
 )
@@ -135,10 +136,17 @@ MISMATCHES = (
 
 PART = Part(
     title="Simulated robots: mismatches",
-    asked="What does something cost that the call does not know, and is it named? The worst error [%] of Coulomb or "
-    "viscous friction (arms: {runs}), and how often each warning is raised.",
-    header=("wrong", "urdf: worst error", "warnings", "free: worst error", "warnings"),
-    reading="Free inertias follow an error of the links: there is nothing to name then.",
+    asked="How large are the errors from a mismatch that the call does not know, and do findings name this mismatch? "
+    "Largest error of Coulomb or viscous friction (arms: {runs}), and how often each warning is raised.",
+    header=(
+        "mismatch",
+        '`inertia="urdf"`: largest error [%]',
+        "warnings",
+        '`inertia="free"`: largest error [%]',
+        "warnings",
+    ),
+    reading='With `inertia="free"` the identified inertias include an error of the links. Then no finding needs to '
+    "name this mismatch.",
 )
 
 

@@ -29,45 +29,46 @@ NEAR = 0.03
 NOISES = (1e-5, 3e-5, 1e-4, 3e-4)  # [rad]
 ARMS = Part(
     title="Simulated robots",
-    asked="How accurate is the friction of {runs} random arms of seven joints? Stamps 50 µs late in the mean, "
-    "velocities 5 ms late, torque noise 0.5 % of the largest torque.",
+    asked="How accurate is the friction of {runs} random arms with seven joints? Time stamps are 50 µs late on "
+    "average. Velocities are 5 ms late. Torque noise is 0.5 % of the largest torque.",
     header=(
         "method",
-        "all within 3 %",
-        "worst Coulomb [%]",
-        "worst viscous [%]",
-        "coverage [%]",
+        "arms with all errors within 3 %",
+        "largest Coulomb error [%]",
+        "largest viscous error [%]",
+        "coverage of the 95 % intervals [%]",
         "warnings",
     ),
-    reading="Filtered least squares knows Coulomb and viscous friction; 40 Hz is its best of 32 settings.",
+    reading="The model of filtered least squares has Coulomb and viscous friction. Of 32 settings of this method, the "
+    "one with 40 Hz is the best.",
 )
 NOISY = Part(
     title="Simulated robots: noise that drowns accelerations",
-    asked="What remains with noise on every position and no velocity? Worst error [%] of Coulomb or viscous "
-    "friction of {runs} arms.",
+    asked="How large are the errors with noise on every position and without a recorded velocity? Largest error of "
+    "Coulomb or viscous friction over {runs} arms [%].",
     header=(
-        "noise",
-        "inertia urdf",
-        "inertia free",
-        "filtered, 20 Hz",
-        "filtered, 40 Hz",
-        "second differences",
+        "position noise",
+        'jointid, `inertia="urdf"`',
+        'jointid, `inertia="free"`',
+        "filtered least squares, 20 Hz",
+        "filtered least squares, 40 Hz",
+        "second differences, no filter",
     ),
 )
 HEAVIER = Part(
     title="Simulated robots: a link 20 % heavier",
-    asked="Is link 4 found to be 1.2 times as heavy as in the URDF?",
+    asked="Does `identify_robot` find that link 4 is 1.2 times as heavy as in the URDF?",
     header=(
         "seed",
-        "scale of link 4",
-        "another link, largest error [%]",
-        'found with `inertia="urdf"`',
+        '`inertia="scaled"`: scale of link 4',
+        "largest error of another link's scale [%]",
+        'warnings with `inertia="urdf"`',
     ),
 )
 FACTS = Part(
     title="Simulated robots: wrong facts",
-    asked="Is a wrong order or coupling named?",
-    header=("stated wrongly", "relative residual [%]", "warnings"),
+    asked="Do the findings name a wrong order of joints, or a wrong coupling?",
+    header=("wrongly stated fact", "relative residual [%]", "warnings"),
 )
 Values = tuple[dict[str, Any], dict[str, Any]]
 
@@ -155,9 +156,9 @@ def wrong_facts(seed: int) -> Iterator[list[str]]:
     ratios = np.diag(turns)
     right = turns / ratios[:, None]
     for name, couplings in (
-        ("nothing, of the coupled wrist", right),
-        ("that motor 7 turns with joint 7 alone", np.eye(JOINTS)),
-        ("the coupling's sign", np.where(np.eye(JOINTS) > 0, right, -right)),
+        ("nothing, arm with a coupled wrist", right),
+        ("coupling of the wrist left out", np.eye(JOINTS)),
+        ("sign of the coupling", np.where(np.eye(JOINTS) > 0, right, -right)),
     ):
         robot = jid.Robot.from_urdf(URDF, gear_ratios=ratios.tolist(), couplings=couplings)
         cases.append((name, motors, robot))

@@ -18,16 +18,17 @@ from arms.seven import Sensors, recorded, simulated
 
 PART = Part(
     title="Robots: time and memory",
-    asked="How long does a call take, and how much memory? Each recording in a program of its own; the loop is plain "
-    "Python over 20 s, with pinocchio's four regressors per sample.",
+    asked="How much time and memory does a call need? Each recording is identified in a new process. The loop for "
+    "comparison is written in Python. This loop calls four regressors of pinocchio for each sample of a recording of "
+    "20 s.",
     header=(
         "recording",
-        "inertia",
-        "seconds",
-        "of the processor",
-        "times the loop",
-        "signals",
-        "peak",
+        "`inertia`",
+        "elapsed time [s]",
+        "CPU time [s]",
+        "CPU time / time of the loop",
+        "memory of the signals",
+        "peak memory",
     ),
 )
 _PERIOD = 10.0  # of the motion [s]

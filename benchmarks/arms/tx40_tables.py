@@ -42,25 +42,33 @@ OURS: dict[str, dict[str, Any]] = {
 }
 FRICTION = Part(
     title="Robot TX40: friction",
-    asked="Does the friction agree with the published one (Janot, Vandanjon, Gautier)? Raw log at the motors, 5 kHz, 9 "
-    "s; Coulomb and viscous; filtered least squares at 20 Hz.",
+    asked="Does the identified friction agree with the values that Janot, Vandanjon and Gautier published? Raw log at "
+    "the motors, 5 kHz, 9 s; model with Coulomb and viscous friction. The peer is filtered least squares with a "
+    "cutoff of 20 Hz.",
     header=(
-        "friction",
+        "friction [N·m, N·m·s/rad]",
         "published",
         "jointid",
-        "difference [%]",
-        "two errors [%]",
-        "filtered",
-        "difference [%]",
+        "jointid − published [%]",
+        "two standard errors of jointid [%]",
+        "filtered least squares",
+        "filtered − published [%]",
     ),
 )
 BLOCKS = Part(
     title="Robot TX40: held-out data",
-    asked="How well are five held-out blocks of 1.5 s predicted? Residual of the torque integrals over the measured "
-    "ones, all joints, windows of 25 and 100 ms.",
-    header=("method", "25 ms [%]", "joints below", "100 ms [%]", "joints below"),
-    reading="*Joints below*: where ours is not above the best filtered least squares. Ours predicts by the motion of "
-    "the filter of 40 Hz, so that only the identified values differ, or by its own velocity.",
+    asked="How well are five held-out blocks of 1.5 s predicted? The torque integrals are taken over windows of 25 "
+    "and 100 ms. The residual of these integrals is in percent of the measured integrals of all joints.",
+    header=(
+        "method",
+        "residual, 25 ms [%]",
+        "joints not worse",
+        "residual, 100 ms [%]",
+        "joints not worse",
+    ),
+    reading="*Joints not worse*: number of joints with a residual that is at most the residual of the best filtered "
+    "least squares. jointid predicts along the motion that the 40 Hz filter gives. So only the identified values "
+    "differ. Rows with *its own velocity* predict along jointid's own motion.",
 )
 LENGTHS = (0.025, 0.1)  # of the windows [s]
 
@@ -177,7 +185,7 @@ def parameters(log: Log) -> Iterator[list[str]]:
             mine = own[f"{kind} {name}"]
             other = theirs[f"{kind} {name}"]
             yield [
-                f"{kind} of {'joint ' if name.isdigit() else ''}{name}",
+                f"{kind} friction of {'joint ' if name.isdigit() else ''}{name}",
                 f"{value:g}",
                 f"{mine.value:.3f}",
                 percent(mine.value / value - 1.0),
